@@ -16,6 +16,20 @@
 
 namespace lucarne::gi {
 
+struct Precomputes;
+
+/// What an engine reads beside the picture of the view. Only this is chosen, loaded and sent to the device.
+struct EngineNeeds {
+    bool light_cut = false;    ///< FrameCuts::light, on which light bounces and by which it is blocked
+    bool light_views = false;  ///< FrameCuts::light_views
+    bool opencl = false;       ///< an OpenCL device
+    /// The needs of both: of two engines for one frame.
+    EngineNeeds operator|(const EngineNeeds& other) const {
+        return {light_cut || other.light_cut, light_views || other.light_views, opencl || other.opencl};
+    }
+    bool operator==(const EngineNeeds&) const = default;
+};
+
 /// What the rest of the program needs to know of an engine without making it. It is one constant in the
 /// engine's folder.
 struct EngineInfo {
@@ -23,6 +37,9 @@ struct EngineInfo {
     std::string_view label;        ///< what people see in the window: "Path tracer"
     std::string_view description;  ///< one line
     std::span<const OptionInfo* const> options = {};
+    EngineNeeds needs = {};
+    /// What it computes in advance (gi/bake/precomputation.h); null: nothing.
+    const Precomputes* precomputes = nullptr;
     /// Pictures that it keeps beside the radiance (Engine::layers); their names become parts of file names.
     std::span<const std::string_view> layers = {};
     bool reports_progress = false;  ///< takes long, and adds finished pixels to Frame::progress
@@ -41,8 +58,8 @@ class Engine {
     Result<void> draw(Frame& frame);
     /// Returns figures of the last frame for statistics and reports ("vpls": 256).
     virtual std::vector<std::pair<std::string, double>> stats() const = 0;
-    /// Whether the engine is making light from the light cuts over several frames (Frame::light_seconds).
-    /// Such a cut should stay as it is until then: another one makes the engine start again.
+    /// Whether the engine is making light from the light cuts over several frames (Frame::light_budget).
+    /// Keep these cuts unchanged while this is true; a changed cut restarts the computation.
     virtual bool reads_light_cuts() const { return false; }
     /// Returns the pictures of info().layers, in their order: a vec4 per pixel, over all frames accumulated
     /// so far.

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -14,12 +13,14 @@
 #include "gi/shared/camera.h"
 #include "gi/shared/light.h"
 #include "gi/shared/material.h"
+#include "gi/steps.h"
 #include "io/core/progress.h"
 
 namespace lucarne::gi {
 
 struct GlFrame;
 class PassTimes;
+class Bake;
 
 struct Bounds {
     glm::vec3 min{0.0f}, max{0.0f};
@@ -38,9 +39,13 @@ struct Frame {
     std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
     Bounds bounds{};                                 ///< of the whole cloud, m
     bool moving = false;  ///< the camera moves: an engine may use results of the frame before
-    /// For moving frames: the time that may be spent on light which outlasts a frame, s. An engine may show
-    /// such light as it was some frames ago, and make the new one bit by bit.
-    double light_seconds = std::numeric_limits<double>::infinity();
+    /// How much of the light that outlasts a frame a moving frame makes. Unless it is `whole`, an engine
+    /// shows the light that it finished last, and makes the new one bit by bit.
+    StepBudget light_budget{};
+    /// What the engine has computed in advance so far (EngineInfo::precomputes); null: nothing yet.
+    const Bake* bake = nullptr;
+    /// To be added to coordinates of the bake's surfels to get those of the frame, m.
+    glm::vec3 bake_offset{0.0f};
     const std::atomic<bool>* stop = nullptr;  ///< see stopped(); or null
     Progress* progress = nullptr;             ///< for engines that report it; or null
     Unlit unlit{};                            ///< for the engine without light

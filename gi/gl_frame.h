@@ -9,11 +9,12 @@
 
 namespace lucarne::gi {
 
-/// The cuts of a frame. Two of them may have the same content.
+/// The cuts of a frame. Two of them may have the same content. Those of the light are there if the engine
+/// needs them (EngineInfo::needs).
 struct FrameCuts {
     const DeviceCut* view = nullptr;            ///< what the camera sees
-    std::vector<const DeviceCut*> light_views;  ///< what each light sees; one a light
-    const DeviceCut* light = nullptr;           ///< everything that may bounce or block light
+    std::vector<const DeviceCut*> light_views;  ///< what each light sees; one a light, or none
+    const DeviceCut* light = nullptr;           ///< everything that may bounce or block light; or null
 };
 
 /// The part of a frame that is on the OpenGL device. `radiance` is vec4 a pixel (rgb W/(sr m^2), w unused),

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "gi/device/cl/cl_device.h"
 #include "io/core/options.h"
 
 namespace lucarne::gi {
@@ -19,7 +20,14 @@ Result<const EngineEntry*> find_engine(std::string_view name) {
 
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name) {
     LUCARNE_ASSIGN(const EngineEntry* entry, find_engine(name));
+    LUCARNE_TRY(can_run(entry->info));
     return entry->make();
+}
+
+Result<void> can_run(const EngineInfo& engine) {
+    if (!engine.needs.opencl) return {};
+    static const Result<void> opencl = opencl_available();  // looking for devices starts OpenCL's drivers
+    return opencl;
 }
 
 const EngineInfo& engine_with(bool EngineInfo::*property) {

@@ -15,9 +15,12 @@ std::span<const EngineEntry> engines();
 const EngineInfo& default_engine();
 
 /// Find or make an engine by name. Errors (ErrorKind::arguments): unknown name; the message lists the known
-/// names.
+/// names. Making also fails as can_run() does.
 Result<const EngineEntry*> find_engine(std::string_view name);
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name);
+/// Returns whether the engine can run on this machine: whether the devices that it needs are there. Looks
+/// once for each kind of device. Errors: why not, and which package brings it.
+Result<void> can_run(const EngineInfo& engine);
 /// Returns the first engine that has the property; the default engine if none has it.
 const EngineInfo& engine_with(bool EngineInfo::*property);
 /// Returns whether an engine of this name exists and has the property.

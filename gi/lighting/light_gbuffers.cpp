@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "gi/host_frame.h"
+#include "gi/steps.h"
+
 namespace lucarne::gi {
 namespace {
 
@@ -83,6 +86,16 @@ Result<bool> LightGBuffers::draw_missing(Device& device, const std::vector<Light
     if (missing == views.end()) return false;
     LUCARNE_TRY(look(device, *missing));
     return true;
+}
+
+Result<void> LightGBuffers::renew(Frame& frame, const std::vector<LightView>& views) {
+    StepRunner<Frame> runner;
+    runner.start({{"light G-buffer", [&](Frame& in) -> Result<StepResult> {
+                       const TimedPass timed(in, "light G-buffer");
+                       LUCARNE_ASSIGN(const bool drawn, draw_missing(in.gl.device, views));
+                       return drawn ? StepResult::again : StepResult::done;
+                   }}});
+    return runner.run(frame, frame.light_budget, frame.stop);
 }
 
 }  // namespace lucarne::gi

@@ -25,6 +25,8 @@ class LightGBuffers {
     /// Draws the first of these views that is not held in the present state of its cut. Returns false if all
     /// of them are. Errors as above.
     Result<bool> draw_missing(Device& device, const std::vector<LightView>& views);
+    /// Draws as many of these as the frame's light_budget allows. Errors as above.
+    Result<void> renew(Frame& frame, const std::vector<LightView>& views);
 
  private:
     /// A drawn light view, without the scratch buffers of rasterize().

@@ -14,6 +14,7 @@ uniform vec2 view_shift;  // of the rays from the middles of their pixels, pixel
 uniform float point_scale;   // scale of the radii
 uniform float point_pixels;  // if over 0: the diameter of all points
 uniform float point_most;    // if over 0: the largest diameter of a point, pixels
+uniform uint point_front_only;  // if not 0: points whose normals point away from the eye are left out
 
 struct Disc {
     vec3 centre;
@@ -52,8 +53,8 @@ float radius_of_pixels(float diameter, float depth) {
 
 uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }
 
-// Transforms a surfel to the view. Returns false if no part of its disc is in front of the near plane, and for
-// outliers.
+// Transforms a surfel to the view. Returns false if no part of its disc is in front of the near plane, for outliers,
+// and for what is left out because it faces away.
 bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     disc.centre = to_view(surfel_position(item, surfel) - view_origin.xyz);
     disc.radius = point_scale * cut_surfel_radius(item, surfel);
@@ -69,8 +70,9 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     float distance2 = view_origin.w > 0.0 ? 0.0 : dot(disc.centre, disc.centre);
     vec3 toward = distance2 > 0.0 ? disc.centre * inversesqrt(distance2) : vec3(0.0, 0.0, 1.0);
     disc.push = kRimPush * disc.radius * toward.z;  // along the ray
-    bool lies = surfel_has_normal(surfel) && !(point_pixels > 0.0);
-    disc.normal = lies ? to_view(surfel_normal(surfel)) : toward;
+    disc.normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : toward;
+    if (point_front_only != 0u && surfel_has_normal(surfel) && dot(disc.normal, toward) > 0.0) return false;
+    if (point_pixels > 0.0) disc.normal = toward;
     disc.extent = disc.radius * sqrt(max(1.0 - disc.normal.z * disc.normal.z, 0.0));
     return disc.centre.z + disc.extent > view_forward.w;
 }

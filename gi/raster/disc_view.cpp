@@ -35,6 +35,7 @@ void set_disc_view(const Program& program, const CameraView& view, const PointSi
     program.set("point_scale", size.scale);
     program.set("point_pixels", size.pixels);
     program.set("point_most", size.most);
+    program.set("point_front_only", size.front_only ? 1u : 0u);
 }
 
 }  // namespace lucarne::gi

@@ -10,11 +10,12 @@
 
 namespace lucarne::gi {
 
-/// The size at which points are drawn for the camera; light views ignore it.
+/// How points are drawn for the camera; light views ignore it.
 struct PointSize {
-    float scale = 1;   ///< scale of the discs' radii
-    float pixels = 0;  ///< if over 0: the diameter of every point, which then faces the eye
-    float most = 0;    ///< if over 0: the largest diameter of a disc, pixels
+    float scale = 1;          ///< scale of the discs' radii
+    float pixels = 0;         ///< if over 0: the diameter of every point, which then faces the eye
+    float most = 0;           ///< if over 0: the largest diameter of a disc, pixels
+    bool front_only = false;  ///< leaves out points whose normals point away from the eye
 };
 
 /// A view as disc.glsl describes it: x right, y down, z along the forward axis.

@@ -15,7 +15,8 @@
 
 namespace lucarne::gi {
 
-/// What a point's colour shows. Engines use this colour as the albedo, so every engine lights it.
+/// What a point's colour shows. Engines use this colour as the albedo, so every engine lights it. `clay` is
+/// one light grey for all points, which shows shape alone.
 enum class ColourBy : uint8_t {
     colour,
     intensity,
@@ -24,7 +25,8 @@ enum class ColourBy : uint8_t {
     return_number,
     scan,
     normal,
-    attribute
+    attribute,
+    clay
 };
 /// Their names in files and options, in the order of the enumerators.
 std::span<const std::string_view> colour_names();
@@ -69,6 +71,7 @@ struct Look {
     double point_pixels = 0;          ///< if over 0: the diameter of every point, pixels
     uint32_t outliers = 1;      ///< how strictly points are left out that are on no surface, 0 (none) to 3
     bool single_discs = false;  ///< draws each pixel as its nearest disc, not blended with those around it
+    bool front_only = false;    ///< leaves out points that face away from the camera
     bool open_holes = false;    ///< leaves out the surfels that fill holes of the scans
     Unlit unlit;
     Backdrop backdrop;

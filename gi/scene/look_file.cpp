@@ -126,8 +126,9 @@ json write_clip(const Clip& clip) {
 }  // namespace
 
 std::span<const std::string_view> colour_names() {
-    static constexpr std::array<std::string_view, 8> kNames = {
-        "colour", "intensity", "elevation", "classification", "return-number", "scan", "normal", "attribute"};
+    static constexpr std::array<std::string_view, 9> kNames = {"colour",         "intensity",     "elevation",
+                                                               "classification", "return-number", "scan",
+                                                               "normal",         "attribute",     "clay"};
     return kNames;
 }
 
@@ -153,6 +154,7 @@ Result<Look> read_look(JsonObject object) {
     LUCARNE_ASSIGN(const int64_t outliers, object.integer("outliers", 0, 3, look.outliers));
     look.outliers = static_cast<uint32_t>(outliers);
     LUCARNE_ASSIGN(look.single_discs, object.boolean("single_discs", false));
+    LUCARNE_ASSIGN(look.front_only, object.boolean("front_only", false));
     LUCARNE_ASSIGN(look.open_holes, object.boolean("open_holes", false));
     LUCARNE_ASSIGN(const size_t shading,
                    object.choice("shading", list(shading_names()), static_cast<size_t>(look.unlit.shading)));
@@ -194,6 +196,7 @@ json write_look(const Look& look) {
     put("point_pixels", look.point_pixels, plain.point_pixels);
     put("outliers", look.outliers, plain.outliers);
     put("single_discs", look.single_discs, plain.single_discs);
+    put("front_only", look.front_only, plain.front_only);
     put("open_holes", look.open_holes, plain.open_holes);
     if (look.unlit.shading != plain.unlit.shading)
         written["shading"] = shading_names()[static_cast<size_t>(look.unlit.shading)];

@@ -50,6 +50,7 @@ std::string_view attribute_name(const Look& look) {
         case ColourBy::elevation:
         case ColourBy::scan:
         case ColourBy::normal:
+        case ColourBy::clay:
             break;
     }
     return {};
@@ -134,9 +135,12 @@ uint32_t Colouring::shade(double value) const {
 std::optional<uint32_t> Colouring::colour(const std::byte* record, double z, uint32_t scan,
                                           const glm::vec3& normal) const {
     static const uint32_t kNone = pack_colour(glm::dvec3(0.5));  // for points without the attribute
+    static const uint32_t kClay = pack_colour(glm::dvec3(0.8, 0.78, 0.75));
     switch (by_) {
         case ColourBy::colour:
             return std::nullopt;
+        case ColourBy::clay:
+            return kClay;
         case ColourBy::elevation:
             return shade(z);
         case ColourBy::scan:

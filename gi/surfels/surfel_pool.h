@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -12,14 +12,11 @@
 #include "gi/device/gl/device.h"
 #include "gi/scene/scene.h"
 #include "gi/shared/surfel.h"
-#include "gi/surfels/cut_nodes.h"
+#include "gi/surfels/cut_parts.h"
 #include "gi/surfels/host_surfels.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::gi {
-
-/// No node holds more surface than this many faces of its cube; a file that claims more is not a scan.
-inline constexpr double kMostSurface = 64;
 
 class BakedLight;
 
@@ -33,54 +30,41 @@ std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const
                                        const octree::NodeData& data, const Scene& scene,
                                        uint32_t first_scan = 0, const BakedLight* baked = nullptr);
 
-/// A node of a cut and how many of its points are drawn.
-struct CutEntry {
-    uint32_t node = 0;
-    uint32_t count = 0;  ///< length of the prefix in use
-};
-
 /// A point of a source: record `index` of what NodeSource::load() returns for `node`.
 struct PointPlace {
     uint32_t node = 0, index = 0;
     bool operator==(const PointPlace&) const = default;
 };
 
-/// The pool's number of the first node of the fillings (octree::Filling); those of a source's nodes are
-/// smaller.
-inline constexpr uint32_t kFirstFilled = 0x80000000u;
-
 /// Maps the surfels of a cut to points of the source. Synthetic surfels are no points. It stays valid when
 /// the cut is gone.
 class CutPoints {
  public:
+    explicit CutPoints(std::vector<CutParts::Run> runs) : runs_(std::move(runs)) {}
     /// Returns the point of an id in a G-buffer drawn from the cut; none for kNoSurfel and ids without a
     /// surfel.
     std::optional<PointPlace> find(uint32_t id) const;
 
  private:
-    friend class SurfelPool;
-    struct Run {
-        uint32_t first_block, node, count;
-    };
-    std::vector<Run> runs_;  ///< by first_block
+    std::vector<CutParts::Run> runs_;
 };
 
 /// A cut on the device, made by SurfelPool::make_cut(). It is valid until one of its nodes is evicted or the
 /// pool is destroyed. Its bindings are the same for every shader: see bind().
 class DeviceCut {
  public:
-    uint32_t surfels() const { return surfels_; }  ///< points drawn, also those that the clip test removes
-    uint32_t clipped() const { return clipped_; }  ///< points of nodes that are clipped as a whole
-    uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
-    float size() const { return size_; }           ///< m, side of the source's root cube
-    /// Hash of what the cut shows: equal for equal surfels at equal places.
-    uint64_t fingerprint() const { return fingerprint_; }
-    /// The nodes that are drawn, sorted.
-    std::span<const CutNode> nodes() const { return nodes_; }
+    // See CutParts for the meaning of these.
+    uint32_t surfels() const { return static_cast<uint32_t>(parts_.surfels); }
+    uint32_t clipped() const { return static_cast<uint32_t>(parts_.clipped); }
+    /// Workgroups of kBlockSurfels to dispatch.
+    uint32_t blocks() const { return static_cast<uint32_t>(parts_.blocks.size()); }
+    float size() const { return parts_.size; }
+    uint64_t fingerprint() const { return parts_.fingerprint; }
+    std::span<const CutNode> nodes() const { return parts_.nodes; }
     std::shared_ptr<const CutPoints> points() const { return points_; }
-    std::span<const CutItem> items() const { return host_items_; }
-    std::span<const CutBlock> block_list() const { return host_blocks_; }
-    const DeviceClip& clip() const { return clip_; }
+    std::span<const CutItem> items() const { return parts_.items; }
+    std::span<const CutBlock> block_list() const { return parts_.blocks; }
+    const DeviceClip& clip() const { return parts_.clip; }
     /// The pool's packed surfels, which CutBlock::first counts.
     const Buffer& pool() const { return *pool_; }
     /// Returns radii and bounds of the surfels. They are computed when first asked for. `pool` is the pool's
@@ -93,13 +77,7 @@ class DeviceCut {
     friend class SurfelPool;
     const Buffer* pool_ = nullptr;
     Buffer items_, blocks_buffer_;
-    std::vector<CutItem> host_items_;
-    std::vector<CutBlock> host_blocks_;
-    DeviceClip clip_;
-    uint32_t surfels_ = 0, blocks_ = 0, clipped_ = 0;
-    float size_ = 1;
-    uint64_t fingerprint_ = 0;
-    std::vector<CutNode> nodes_;
+    CutParts parts_;  ///< without the runs, which `points_` has
     std::shared_ptr<const CutPoints> points_;
     mutable std::optional<HostSurfels> on_host_;
 };
@@ -108,7 +86,7 @@ class DeviceCut {
 /// load, replace and evict events feed it. A node takes any free pages, so fragmentation never wastes room.
 class SurfelPool {
  public:
-    static constexpr uint32_t kPageSurfels = 1024;
+    static constexpr uint32_t kPageSurfels = gi::kPageSurfels;
     /// Makes a pool of `capacity` surfels (rounded up to pages), 16 bytes each. All memory is taken at once,
     /// so that the cap is hard. Errors: over the cap, out of device memory.
     static Result<SurfelPool> create(Device& device, uint32_t capacity);
@@ -135,18 +113,10 @@ class SurfelPool {
     std::vector<Surfel> download(const DeviceCut& cut) const;
 
  private:
-    struct Resident {
-        std::vector<uint32_t> pages;
-        uint32_t count = 0;    ///< surfels
-        uint64_t content = 0;  ///< hash of the surfels
-    };
-    struct CutParts;
-    void add_filling(const octree::Filling& filling, uint32_t first, double unit,
-                     const glm::dvec3& local_origin, const Clip& clip, CutParts& parts) const;
-    void upload(const Resident& node, std::span<const PackedSurfel> surfels);
+    void upload(const PlacedNode& node, std::span<const PackedSurfel> surfels);
 
     Buffer buffer_;
-    std::unordered_map<uint32_t, Resident> resident_;
+    PlacedNodes resident_;
     std::vector<uint32_t> free_;  ///< pages; the next one to take is at the end
     uint32_t capacity_ = 0;       ///< surfels
 };

@@ -13,6 +13,7 @@ namespace lucarne {
 namespace {
 
 constexpr uint64_t kLargestFile = uint64_t{16} << 20;
+constexpr int kDeepest = 100;  ///< objects and arrays inside each other; copies and texts of values recurse
 
 /// Finds the place where a text stops being JSON; the library's exceptions do not always tell.
 class MistakeFinder final : public nlohmann::json::json_sax_t {
@@ -64,9 +65,27 @@ class MistakeFinder final : public nlohmann::json::json_sax_t {
     std::string why_ = "is not JSON";
 };
 
+bool too_deep(std::string_view text) {
+    int depth = 0;
+    bool quoted = false;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"') quoted = !quoted;
+        if (quoted) {
+            if (c == '\\') ++i;
+        } else if (c == '{' || c == '[') {
+            if (++depth > kDeepest) return true;
+        } else if (c == '}' || c == ']') {
+            --depth;
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& name) {
+    if (too_deep(text)) return rejected(name, fmt::format("is nested more than {} levels deep", kDeepest));
     auto parsed = nlohmann::json::parse(text, nullptr, false);
     if (!parsed.is_discarded()) return parsed;
     MistakeFinder finder(text);

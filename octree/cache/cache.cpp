@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "io/core/random.h"
 #include "octree/cache/file.h"
 #include "octree/tree/filling.h"
 
@@ -221,6 +222,10 @@ Result<NodeData> PayloadReader::load(const ByteSource& file, uint32_t node, cons
 
 Result<NodeData> CacheFile::load(uint32_t node) const {
     return reader_.load(*file_, node, nodes_[node], payloads_[node]);
+}
+
+std::optional<SourceIdentity> CacheFile::identity() const {
+    return SourceIdentity{mix64(block_.directory_checksum, block_.metadata_checksum), file_->path()};
 }
 
 Result<NodeData> CacheFile::load_filling() const {

@@ -57,7 +57,11 @@ class CacheFile final : public NodeSource {
 
     const SourceHeader& header() const override { return header_; }
     std::span<const NodeInfo> nodes() const override { return nodes_; }
+    uint64_t directory_bytes() const override {
+        return nodes().size_bytes() + payloads_.size() * sizeof(StoredPayload);
+    }
     Result<NodeData> load(uint32_t node) const override;
+    std::optional<SourceIdentity> identity() const override;
     Result<std::vector<Filling>> fillings() const override;
 
     /// Loads the records of all synthetic surfels, in the schema of header().filling; empty if there are

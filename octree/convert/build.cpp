@@ -130,11 +130,16 @@ Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store
 
 /// Reads the inputs once, for bounds and counts. `counted` becomes the counts for the chunks, or stays empty
 /// if the headers do not state what is needed to make them.
-Result<ScanFacts> scan_and_count(const Unifier& inputs, const MemoryPlan& memory,
+Result<ScanFacts> scan_and_count(const Unifier& inputs, const MemoryPlan& memory, BuildListener* listener,
                                  std::optional<CountGrid>& counted) {
     const ThreadLimit readers(memory.readers);
     EarlyCount early(inputs, memory.grid_bytes);
-    LUCARNE_ASSIGN(auto facts, scan_inputs(inputs, memory.batch_bytes, 0, &early));
+    Steps steps(listener, "reading", inputs.declared_points());
+    const auto seen = [&](std::span<const std::byte> records) -> Result<void> {
+        if (listener) listener->read(records);
+        return steps.add(records.size() / inputs.schema().stride);
+    };
+    LUCARNE_ASSIGN(auto facts, scan_inputs(inputs, memory.batch_bytes, 0, &early, seen));
     counted = early.take(facts);
     return facts;
 }
@@ -183,8 +188,9 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
     std::optional<CountGrid> counted;
     LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
-                       return resumable(work, "scan", ScanFacts::restore,
-                                        [&] { return scan_and_count(inputs, memory, counted); });
+                       return resumable(work, "scan", ScanFacts::restore, [&] {
+                           return scan_and_count(inputs, memory, options.listener, counted);
+                       });
                    }));
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs, facts.without_normal == 0));
     if (normals && !*normals && facts.without_normal == facts.points)

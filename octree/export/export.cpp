@@ -159,6 +159,10 @@ io::WriteOptions Exporter::write_options(bool overwrite) const {
     return options;
 }
 
+Result<void> Exporter::check_cancelled() const {
+    return options_.cancelled && options_.cancelled() ? failed("export", "was cancelled") : Result<void>();
+}
+
 Result<void> Exporter::visit_batches(
     const std::function<Result<bool>(std::span<const std::byte>, uint64_t)>& visit) const {
     std::vector<std::byte> records;
@@ -174,6 +178,7 @@ Result<void> Exporter::visit_batches(
         LUCARNE_ASSIGN(const NodeData data, source_.load(node));
         for (size_t first = 0; first < count; first += kBatchPoints) {
             const size_t batch = std::min(kBatchPoints, count - first);
+            LUCARNE_TRY(check_cancelled());
             records.clear();
             append(data, first, batch, passed, records);
             const uint64_t done = first + batch < count ? batch : left;
@@ -227,6 +232,7 @@ Result<uint64_t> Exporter::write_copc(const std::filesystem::path& path, bool ov
     for (uint32_t node = 0; node < nodes.size(); ++node) {
         const NodeKey& key = nodes[node].key;
         if (key.level > kMaxLevel) continue;
+        LUCARNE_TRY(check_cancelled());
         records.clear();
         LUCARNE_TRY(append_node(node, key.level == kMaxLevel, passed, records));
         LUCARNE_TRY(writer->write({key.level, key.x, key.y, key.z}, records));

@@ -29,7 +29,8 @@ struct ExportOptions {
     /// If over 0: positions are rounded to multiples of it, in the file's unit, and stored as integers.
     /// check_precision() says whether they fit.
     double precision = 0;
-    uint64_t every = 1;  ///< writes each so many-th of the points that are left
+    std::function<bool()> cancelled{};  ///< whether to end with an error before the next batch; null: never
+    uint64_t every = 1;                 ///< writes each so many-th of the points that are left
 
     bool all_points() const { return !meets && !keeps && spacing <= 0 && every <= 1; }
 };
@@ -72,6 +73,7 @@ class Exporter {
     /// schema. `passed` counts the points that the other choices leave, for ExportOptions::every.
     void append(const NodeData& data, size_t first, size_t count, uint64_t& passed,
                 std::vector<std::byte>& records) const;
+    Result<void> check_cancelled() const;
     /// Visits the points to write, node by node, until `visit` returns false: their records and the number of
     /// points of the source that they were taken from.
     Result<void> visit_batches(

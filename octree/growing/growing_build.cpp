@@ -13,11 +13,13 @@
 
 #include "io/core/guarded.h"
 #include "io/core/log.h"
+#include "io/core/parallel.h"
 #include "octree/cache/cache.h"
 #include "octree/colours/colour_survey.h"
 #include "octree/convert/build_inputs.h"
 #include "octree/convert/chunks/record_loader.h"
 #include "octree/convert/nodes/build_listener.h"
+#include "octree/growing/pass_sample.h"
 #include "octree/growing/quick_surface.h"
 #include "octree/growing/sample.h"
 #include "octree/growing/tree_top.h"
@@ -52,30 +54,52 @@ constexpr double kFace = 1;  ///< areas are in faces of the root cube
 constexpr uint64_t kMostGrown = 1'000'000;     ///< points
 constexpr uint64_t kLeastPerPoint = 16;        ///< points in the inputs for each point of the last round
 constexpr double kSecondsBetweenRounds = 0.5;  ///< at least
+/// Until the first round, if the build's first pass is kept: for most scans that pass is over sooner.
+constexpr double kSecondsOfPass = 2;
+constexpr uint64_t kManyTimes = 4;  ///< as many points as the sample has are shown in two steps
+constexpr uint64_t kMostReadBytes = uint64_t{128} << 20;  ///< of the points kept of the build's first pass
+
+/// Returns every n-th record.
+std::vector<std::byte> some_of(std::span<const std::byte> records, size_t stride, size_t n) {
+    std::vector<std::byte> some;
+    for (size_t at = 0; at < records.size(); at += n * stride) {
+        const auto record = records.subspan(at, stride);
+        some.insert(some.end(), record.begin(), record.end());
+    }
+    return some;
+}
 
 /// Returns the sample's records as a cache over `root` would hold them, along that root's Morton curve.
 LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const io::Schema& schema,
                         const Cube& root) {
     const size_t count = sample.points.positions.size();
     std::vector<CodeIndex> order(count);
-    for (uint32_t i = 0; i < count; ++i) order[i] = {root.place(sample.points.positions[i]).code(), i};
+    parallel_ranges(count, 1 << 14, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            order[i] = {root.place(sample.points.positions[i]).code(), static_cast<uint32_t>(i)};
+    });
     sort_by_code(order, 3 * kMaxLevel);
     const io::Attribute* normal = schema == from ? nullptr : schema.find(io::names::normal_oct);
     const io::Attribute* area = schema == from ? nullptr : schema.find(io::names::area);
     const SplatSurface splats(from);
     LoosePoints points;
     points.records.resize(count * schema.stride);
-    for (size_t i = 0; i < count; ++i) {
-        const uint32_t index = order[i].index;
-        std::byte* record = &points.records[i * schema.stride];
-        std::memcpy(record, &sample.points.records[size_t{index} * from.stride], from.stride);
-        const QuickSurface& surface = sample.surface[index];
-        const float share = splats.area(record, surface.area, root.size * root.size);
-        if (normal) io::store(record + normal->offset, encode_normal(splats.normal(record, surface.normal)));
-        if (area) io::store(record + area->offset, encode_area(share, kFace));
-        points.codes.push_back(order[i].code);
-        points.areas.push_back(area ? share : 0.0f);
-    }
+    points.codes.resize(count);
+    points.areas.resize(count);
+    parallel_ranges(count, 1 << 14, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const uint32_t index = order[i].index;
+            std::byte* record = &points.records[i * schema.stride];
+            std::memcpy(record, &sample.points.records[size_t{index} * from.stride], from.stride);
+            const QuickSurface& surface = sample.surface[index];
+            const float share = splats.area(record, surface.area, root.size * root.size);
+            if (normal)
+                io::store(record + normal->offset, encode_normal(splats.normal(record, surface.normal)));
+            if (area) io::store(record + area->offset, encode_area(share, kFace));
+            points.codes[i] = order[i].code;
+            points.areas[i] = area ? share : 0.0f;
+        }
+    });
     return points;
 }
 
@@ -95,7 +119,8 @@ struct GrowingBuild::State final : BuildListener {
     log::Operation operation = log::Operation::current();  ///< the operation that opened the build
 
     // Used by the build's thread:
-    LoosePoints loose;
+    std::shared_ptr<const LoosePoints> loose;
+    std::optional<PassSample> passing;  ///< of the build's first pass, while it runs
     std::vector<format::Entry> entries;
     std::vector<std::shared_ptr<const LooseNode>> roots;
     Clock::time_point published;
@@ -122,6 +147,10 @@ struct GrowingBuild::State final : BuildListener {
     void end(Result<std::shared_ptr<const NodeSource>> cache);
     Result<std::shared_ptr<const NodeSource>> build();
 
+    std::vector<std::byte> take_passing();
+    void replace_sample(std::vector<std::byte> records);
+
+    void read(std::span<const std::byte> records) override;
     void scanned(const SourceHeader& facts, const io::Schema& records) override;
     void building(const io::Schema& records) override;
     void settled(std::span<const format::Entry> nodes) override;
@@ -161,14 +190,15 @@ ScanFacts GrowingBuild::State::facts_of(const QuickSample& points, const Cube& r
 /// Publishes the sample. Its points that no camera saw, and the gains of its stations, are found as those of
 /// the cache will be.
 void GrowingBuild::State::show_sample(const Cube& root) {
-    loose = along_curve(sample, unifier->schema(), schema, root);
+    LoosePoints points = along_curve(sample, unifier->schema(), schema, root);
     ColourSurvey survey(header);
     if (survey.has_colours()) {
-        NodeData all{static_cast<uint32_t>(loose.codes.size()), std::move(loose.records)};
+        NodeData all{static_cast<uint32_t>(points.codes.size()), std::move(points.records)};
         survey.add(root, all);
-        loose.records = std::move(all.records);
+        points.records = std::move(all.records);
         header.station_colours = survey.result();
     }
+    loose = std::make_shared<const LoosePoints>(std::move(points));
     publish(nullptr);
 }
 
@@ -191,12 +221,14 @@ void GrowingBuild::State::grow() {
     const uint64_t most =
         std::max(options.sample_points, std::min(kMostGrown, sample.points.points / kLeastPerPoint));
     uint64_t points = options.first_points, read = options.first_read;
+    double pause = options.read_points > 0 ? kSecondsOfPass : kSecondsBetweenRounds;
     while (!grown && points < most) {
         {
             std::unique_lock lock(grower_mutex);
-            grower_wakes.wait_for(lock, std::chrono::duration<double>(kSecondsBetweenRounds),
-                                  [&] { return grown.load(); });
+            grower_wakes.wait_for(lock, std::chrono::duration<double>(pause), [&] { return grown.load(); });
         }
+        if (grown) return;
+        pause = kSecondsBetweenRounds;
         points = std::min(2 * points, most);
         read *= 2;
         auto taken = arena.execute(
@@ -245,12 +277,54 @@ void GrowingBuild::State::show(std::shared_ptr<const NodeSource> source) {
     if (changed) changed();
 }
 
+void GrowingBuild::State::read(std::span<const std::byte> records) {
+    if (options.read_points == 0) return;
+    const uint32_t stride = unifier->schema().stride;
+    if (!passing)
+        passing.emplace(stride, std::min(options.read_points, kMostReadBytes / stride),
+                        unifier->declared_points());
+    passing->add(records);
+}
+
 void GrowingBuild::State::scanned(const SourceHeader& facts, const io::Schema& records) {
+    std::vector<std::byte> passed = take_passing();
+    if (!passed.empty()) end_growing();
+    {
+        const std::lock_guard lock(making);
+        header = facts;
+        header.schema = schema = records;  // a few points without a normal may not be in the sample
+        header_is_final = true;
+        if (passed.empty()) {
+            sample.move_to(header.root);
+            return show_sample(header.root);
+        }
+    }
+    // The surface of all points takes seconds, that of some tenths of a second.
+    const size_t stride = unifier->schema().stride, count = passed.size() / stride;
+    if (count >= kManyTimes * options.sample_points)
+        replace_sample(some_of(passed, stride, count / options.sample_points));
+    replace_sample(std::move(passed));
+    sample = {};  // it is not needed again
+}
+
+/// Returns the points that were kept of the first pass, if they are more than those of the sample.
+std::vector<std::byte> GrowingBuild::State::take_passing() {
+    if (!passing) return {};
+    std::vector<std::byte> records = passing->take();
+    passing.reset();
     const std::lock_guard lock(making);
-    header = facts;
-    header.schema = schema = records;  // a few points without a normal may not be in the sample
-    header_is_final = true;
-    sample.move_to(header.root);
+    if (records.size() <= sample.points.records.size()) return {};
+    return records;
+}
+
+/// Shows these records of all points' box instead of the sample, which grows no more.
+void GrowingBuild::State::replace_sample(std::vector<std::byte> records) {
+    QuickSample points;
+    points.records = std::move(records);
+    points.points = header.points;
+    auto taken = with_positions(*unifier, std::move(points));
+    if (!taken) return;
+    sample = with_surface(std::move(*taken), header.root);
     show_sample(header.root);
 }
 

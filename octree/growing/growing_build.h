@@ -37,6 +37,9 @@ struct GrowingOptions {
     /// many points may be read for it. Then the sample grows while the build runs: each round doubles it.
     /// 0: the first source is the whole sample.
     uint64_t first_points = 0, first_read = 0;
+    /// Points that are kept of the build's first pass, and replace the sample when it has ended (fewer if
+    /// they would take over 128 MiB). 0: the sample stays.
+    uint64_t read_points = 0;
 };
 
 /// A scan that is shown at once and converted meanwhile. Its source is first a sample of the whole scan; then

@@ -128,7 +128,15 @@ Result<std::vector<std::byte>> read_front(const Unifier& inputs, const Front& fr
     return kept;
 }
 
-/// Returns positions and bounds of the sample's records.
+/// The part of `most` that an input gets.
+uint64_t share_of(const Unifier& inputs, size_t input, uint64_t all, uint64_t most) {
+    const double share = static_cast<double>(inputs.source(input).info().declared_points) /
+                         static_cast<double>(std::max<uint64_t>(1, all));
+    return std::max(kLeastOfInput, static_cast<uint64_t>(share * static_cast<double>(most)));
+}
+
+}  // namespace
+
 Result<QuickSample> with_positions(const Unifier& inputs, QuickSample sample) {
     const size_t stride = inputs.schema().stride, count = sample.records.size() / stride;
     if (count == 0) return rejected(inputs.source(0).info().path, "has no points");
@@ -144,24 +152,9 @@ Result<QuickSample> with_positions(const Unifier& inputs, QuickSample sample) {
     return sample;
 }
 
-uint64_t points_of(const Unifier& inputs) {
-    uint64_t points = 0;
-    for (size_t i = 0; i < inputs.inputs(); ++i) points += inputs.source(i).info().declared_points;
-    return points;
-}
-
-/// The part of `most` that an input gets.
-uint64_t share_of(const Unifier& inputs, size_t input, uint64_t all, uint64_t most) {
-    const double share = static_cast<double>(inputs.source(input).info().declared_points) /
-                         static_cast<double>(std::max<uint64_t>(1, all));
-    return std::max(kLeastOfInput, static_cast<uint64_t>(share * static_cast<double>(most)));
-}
-
-}  // namespace
-
 Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Sampling& sampling) {
     QuickSample sample;
-    sample.points = points_of(inputs);
+    sample.points = inputs.declared_points();
     Steps steps(sampling, sample.points);
     for (size_t i = 0; i < inputs.inputs(); ++i) {
         const uint64_t wanted = share_of(inputs, i, sample.points, most);
@@ -176,7 +169,7 @@ Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Samp
 Result<QuickSample> take_sketch(const Unifier& inputs, uint64_t most, uint64_t read,
                                 const Sampling& sampling) {
     QuickSample sample;
-    sample.points = points_of(inputs);
+    sample.points = inputs.declared_points();
     if (inputs.inputs() == 1 && (sample.points <= read || inputs.source(0).seekable()))
         return take_sample(inputs, most, sampling);
     Steps steps(sampling, std::min(read, sample.points));

@@ -36,4 +36,7 @@ Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Samp
 Result<QuickSample> take_sketch(const Unifier& inputs, uint64_t most, uint64_t read,
                                 const Sampling& sampling = {});
 
+/// Sets positions and bounds from the sample's records. Errors: no points.
+Result<QuickSample> with_positions(const Unifier& inputs, QuickSample sample);
+
 }  // namespace lucarne::octree

@@ -6,9 +6,12 @@
 #include "octree/growing/tree_top.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
+#include <mutex>
 
+#include "io/core/parallel.h"
 #include "octree/cache/file.h"
 #include "octree/convert/nodes/subtree.h"
 #include "octree/normals/surface/area_floor.h"
@@ -16,11 +19,13 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr uint32_t kGridLevels = 7;  ///< 2^7 cells a side of a node
+constexpr uint32_t kGridLevels = 7;        ///< 2^7 cells a side of a node
+constexpr size_t kWorthThreads = 100'000;  ///< points below which a cube's octants are built one by one
 
-/// A node's points: in memory, or in the file if `data` is null.
+/// Where a node's points are: loose ones in memory, or in the file.
 struct Content {
-    std::shared_ptr<const NodeData> data;
+    bool loose = false;
+    size_t first = 0;  ///< of the node's loose points
     StoredPayload stored;
 };
 
@@ -29,19 +34,37 @@ class GrowingSource final : public NodeSource {
     explicit GrowingSource(const GrowingState& state)
         : header_(state.header),
           file_(state.file),
+          sample_(state.sample),
+          roots_(state.roots.begin(), state.roots.end()),
           decoders_(std::make_unique<codec::DecoderPool>(header_.schema)) {}
 
     const SourceHeader& header() const override { return header_; }
     std::span<const NodeInfo> nodes() const override { return nodes_; }
     Result<NodeData> load(uint32_t node) const override {
         const Content& content = contents_[node];
-        if (content.data) return *content.data;
-        return load_payload(*file_, node, nodes_[node], content.stored, *decoders_, header_.schema.stride);
+        const uint32_t stride = header_.schema.stride;
+        if (!content.loose)
+            return load_payload(*file_, node, nodes_[node], content.stored, *decoders_, stride);
+        NodeData data;
+        data.count = nodes_[node].count;
+        data.records.resize(size_t{data.count} * stride);
+        for (size_t i = 0; i < data.count; ++i)
+            std::memcpy(&data.records[i * stride], loose_[content.first + i], stride);
+        return data;
     }
 
-    void add(const NodeInfo& info, Content content) {
+    // Any thread may add nodes.
+    void add(const NodeInfo& info, const StoredPayload& stored) {
+        const std::lock_guard lock(adding_);
         nodes_.push_back(info);
-        contents_.push_back(std::move(content));
+        contents_.push_back({false, 0, stored});
+    }
+    /// Adds a node of loose points: records of the sample or of a root, which the source keeps.
+    void add(const NodeInfo& info, std::span<const std::byte* const> records) {
+        const std::lock_guard lock(adding_);
+        nodes_.push_back(info);
+        contents_.push_back({true, loose_.size(), {}});
+        loose_.insert(loose_.end(), records.begin(), records.end());
     }
     /// Sorts the nodes into the order of a directory and links them.
     void link();
@@ -49,8 +72,12 @@ class GrowingSource final : public NodeSource {
  private:
     SourceHeader header_;
     std::shared_ptr<const ByteSource> file_;
+    std::shared_ptr<const LoosePoints> sample_;
+    std::vector<std::shared_ptr<const LooseNode>> roots_;
     std::unique_ptr<codec::DecoderPool> decoders_;
+    std::mutex adding_;
     std::vector<NodeInfo> nodes_;
+    std::vector<const std::byte*> loose_;  ///< records of `sample_` and `roots_`, node after node
     std::vector<Content> contents_;
 };
 
@@ -63,7 +90,7 @@ void GrowingSource::link() {
     std::vector<Content> contents;
     for (const uint32_t i : order) {
         nodes.push_back(nodes_[i]);
-        contents.push_back(std::move(contents_[i]));
+        contents.push_back(contents_[i]);
     }
     uint32_t next = 1;
     for (uint32_t i = 0; i < nodes.size(); ++i) {
@@ -131,8 +158,8 @@ Top::Top(const GrowingState& state, GrowingSource& source)
       root_size_(state.header.root.size) {
     for (const auto& root : roots_) add_items(root->points, 0);
     const uint64_t done = finished_end(state);
-    const auto& codes = state.sample.codes;
-    add_items(state.sample,
+    const auto& codes = state.sample->codes;
+    add_items(*state.sample,
               static_cast<size_t>(std::lower_bound(codes.begin(), codes.end(), done) - codes.begin()));
     for (size_t i = 0; i < items_.size(); ++i) {
         const uint64_t differs = i ? items_[i].code ^ items_[i - 1].code : uint64_t{1} << (3 * kMaxLevel);
@@ -168,41 +195,44 @@ void Top::emit(const NodeInfo& node, size_t first, size_t last, double surface, 
     }
     std::vector<uint32_t> order;
     append_prefix_order(passes, 0, order);
-    auto data = std::make_shared<NodeData>();
-    data->count = static_cast<uint32_t>(order.size());
-    data->records.resize(order.size() * stride_);
-    for (size_t i = 0; i < order.size(); ++i) {
-        std::memcpy(&data->records[i * stride_], mine[order[i]]->record, stride_);
-        own.push_back(mine[order[i]]->area);
+    std::vector<const std::byte*> records;
+    for (const uint32_t i : order) {
+        records.push_back(mine[i]->record);
+        own.push_back(mine[i]->area);
     }
     NodeInfo info = node;
-    info.count = data->count;
-    info.payload_bytes = static_cast<uint32_t>(data->records.size());
+    info.count = static_cast<uint32_t>(records.size());
+    info.payload_bytes = static_cast<uint32_t>(records.size() * stride_);
     info.area_floor = stored_floors(area_floors(inherited, own, surface), root_size_);
-    source_.add(info, {std::move(data), {}});
+    source_.add(info, records);
 }
 
-/// Splits the points [first, last) and the roots among the octants.
+/// Splits the points [first, last) and the roots among the octants, which are built in parallel.
 Part Top::build_children(NodeInfo& info, size_t first, size_t last, size_t first_root, size_t last_root) {
+    std::array<size_t, 9> point{first}, root{first_root};  // where each octant begins
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+        const uint64_t end = codes_end(info.key.child(octant));
+        size_t& next = root[octant + 1] = root[octant];
+        while (next < last_root && codes_end(roots_[next]->node.key) <= end) ++next;
+        const auto points = std::span(items_).subspan(point[octant], last - point[octant]);
+        const auto after =
+            std::ranges::partition_point(points, [&](const Item& item) { return item.code < end; });
+        point[octant + 1] = point[octant] + static_cast<size_t>(after - points.begin());
+    }
+    std::array<Part, 8> parts;
+    const auto build_one = [&](size_t i) {
+        if (point[i] < point[i + 1] || root[i] < root[i + 1])
+            parts[i] =
+                build(info.key.child(static_cast<uint32_t>(i)), point[i], point[i + 1], root[i], root[i + 1]);
+    };
+    parallel_ranges(8, last - first < kWorthThreads ? 8 : 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) build_one(i);
+    });
     Part sum;
     for (uint32_t octant = 0; octant < 8; ++octant) {
-        const NodeKey child = info.key.child(octant);
-        const uint64_t end_code = codes_end(child);
-        size_t end_root = first_root;
-        while (end_root < last_root && codes_end(roots_[end_root]->node.key) <= end_code) ++end_root;
-        const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(first);
-        const auto end =
-            first + static_cast<size_t>(
-                        std::partition_point(begin, items_.begin() + static_cast<std::ptrdiff_t>(last),
-                                             [&](const Item& item) { return item.code < end_code; }) -
-                        begin);
-        if (end == first && end_root == first_root) continue;
-        const Part part = build(child, first, end, first_root, end_root);
-        sum.points += part.points;
-        sum.surface += part.surface;
-        if (part.points > 0) info.child_mask |= static_cast<uint8_t>(1u << octant);
-        first = end;
-        first_root = end_root;
+        sum.points += parts[octant].points;
+        sum.surface += parts[octant].surface;
+        if (parts[octant].points > 0) info.child_mask |= static_cast<uint8_t>(1u << octant);
     }
     return sum;
 }
@@ -251,7 +281,7 @@ std::shared_ptr<const NodeSource> make_growing_source(const GrowingState& state)
                          .subtree_count = entry.subtree_count,
                          .payload_bytes = entry.payload_bytes,
                          .area_floor = entry.area_floor},
-                        {nullptr, {entry.payload_offset, entry.checksum, entry.codec, entry.layout}});
+                        StoredPayload{entry.payload_offset, entry.checksum, entry.codec, entry.layout});
     source->link();
     return source;
 }

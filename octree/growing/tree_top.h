@@ -33,7 +33,7 @@ struct GrowingState {
     /// In any order; entries that are not below a node of `roots` are left out.
     std::span<const format::Entry> settled;
     std::span<const std::shared_ptr<const LooseNode>> roots;  ///< along the Morton curve
-    const LoosePoints& sample;                                ///< of the whole cloud
+    std::shared_ptr<const LoosePoints> sample;                ///< of the whole cloud
     std::shared_ptr<const ByteSource> file;                   ///< the file that holds what is settled
 };
 

@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 
+#include "io/core/random.h"
 #include "octree/normals/surface/area_floor.h"
 
 namespace lucarne::octree {
@@ -46,6 +47,16 @@ class JoinedSource final : public NodeSource {
     Result<NodeData> load(uint32_t node) const override {
         const Part& part = part_with(node);
         return part.source->load(node - part.first_node);
+    }
+    std::optional<SourceIdentity> identity() const override {
+        std::optional<SourceIdentity> all;
+        for (const Part& part : parts_) {
+            auto own = part.source->identity();
+            if (!own) return std::nullopt;
+            if (!all) all = SourceIdentity{0, own->file};
+            all->content = mix64(all->content, own->content);
+        }
+        return all;
     }
     Result<std::vector<Filling>> fillings() const override {
         std::vector<Filling> all;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -92,6 +93,12 @@ struct Filling {
     double scale = 1.0;  ///< the part's unit in the source's
 };
 
+/// Identifies what a source contains across runs of the program, for results that are kept about it.
+struct SourceIdentity {
+    uint64_t content = 0;        ///< equal for equal content
+    std::filesystem::path file;  ///< the (first) cache, beside which they may be kept
+};
+
 /// Hands out octree nodes: a cache, a COPC file, a growing build, or several sources joined. Thread-safe. The
 /// directory is in memory (about 64 bytes a node); points are loaded node by node.
 class NodeSource {
@@ -120,6 +127,8 @@ class NodeSource {
     virtual uint64_t directory_bytes() const { return nodes().size_bytes(); }
     /// Loads and checks one node; blocks. Errors: unreadable, truncated, checksum.
     virtual Result<NodeData> load(uint32_t node) const = 0;
+    /// Returns nothing for sources that have no such file, for example a build that grows.
+    virtual std::optional<SourceIdentity> identity() const { return std::nullopt; }
     /// Loads what fills the holes of the parts; nothing for parts without holes. Errors: as of load().
     virtual Result<std::vector<Filling>> fillings() const { return std::vector<Filling>{}; }
 };

@@ -9,9 +9,8 @@
 #include "gi/registry.h"
 #include "gi/scene/render_settings_file.h"
 #include "gi/scene/scene.h"
-#include "io/image/image.h"
+#include "tests/added_engine/run.h"
 #include "tests/viewer/program.h"
-#include "viewer/commands/commands.h"
 #include "viewer/flythrough/report.h"
 #include "viewer/window/panels/panels.h"
 
@@ -21,32 +20,14 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-/// Runs a command in this program, which contains the added engine.
-Result<void> run(const std::vector<std::string>& arguments) {
-    CommandLine line("lucarne", "");
-    for (const auto add : commands()) add(line);
-    std::vector<std::string> words = {"lucarne"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
-    LUCARNE_ASSIGN(const auto action, line.parse(static_cast<int>(pointers.size()), pointers.data()));
-    return action ? action() : Result<void>{};
-}
+using test::run;
 
 class AddedEngine : public ::testing::Test {
  protected:
     void SetUp() override { cache_ = test::make_cornell(folder_, "20k"); }
     /// Returns the maximum of each channel in a picture of the engine.
-    glm::vec3 brightest(std::vector<std::string> options) {
-        options.insert(options.begin(), {"render", cache_, "-o", folder_ / "out.exr", "--overwrite", "--size",
-                                         "64x48", "--engine", "paint"});
-        const auto done = run(options);
-        EXPECT_TRUE(done) << done.error().line();
-        const auto picture = io::read_exr(folder_ / "out.exr");
-        EXPECT_TRUE(picture);
-        glm::vec3 most(0.0f);
-        for (const glm::vec4& pixel : picture->pixels) most = glm::max(most, glm::vec3(pixel));
-        return most;
+    glm::vec3 brightest(const std::vector<std::string>& options) const {
+        return test::brightest(cache_, folder_ / "out.exr", "paint", options);
     }
     std::string scene(const std::string& render) const {
         const std::string cornell = test::bytes_of(LUCARNE_SOURCE_DIR "/data/scenes/cornell.json");

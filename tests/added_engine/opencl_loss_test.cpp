@@ -1,7 +1,10 @@
 // An engine whose OpenCL device is lost: the worker drops it with the OpenGL device and goes on with new
 // ones.
+#include <cstdlib>
+
 #include <gmock/gmock.h>
 
+#include "gi/registry.h"
 #include "tests/added_engine/opencl/opencl.h"
 #include "tests/viewer/frame/on_worker.h"
 #include "viewer/inputs/input.h"
@@ -38,6 +41,18 @@ TEST_F(LostOpenClDevice, IsReplacedTogetherWithTheOpenGlDeviceAndTheSameRequestG
     EXPECT_FALSE(worker_->lost_device());
     const size_t middle = (size_t{32} * 96 + 48) * 4;
     EXPECT_GT(picture->rgba[middle + 2], picture->rgba[middle]) << "it is blue, as OpenCL painted it";
+}
+
+TEST(OpenClEngineDeathTest, IsRefusedWithTheNameOfThePackageWhereThereIsNoDevice) {
+    testing::FLAGS_gtest_death_test_style = "threadsafe";  // in a process that has not looked for devices yet
+    EXPECT_EXIT(
+        {
+            ::setenv("OCL_ICD_VENDORS", "/nonexistent", 1);
+            const auto made = gi::make_engine("opencl");
+            std::fputs(made ? "made" : made.error().line().c_str(), stderr);
+            std::exit(made || !gi::make_engine("vpl"));
+        },
+        testing::ExitedWithCode(0), "OpenCL: no device was found.*pocl-opencl-icd");
 }
 
 }  // namespace

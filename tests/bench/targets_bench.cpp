@@ -15,12 +15,12 @@
 
 #include "gi/bounce_options.h"
 #include "gi/raster/gbuffer.h"
+#include "gi/scene/views.h"
 #include "tests/bench/conversion.h"
 #include "tests/bench/formats.h"
 #include "tests/bench/quantile.h"
 #include "tests/io/io_testing.h"
 #include "viewer/commands/options/drawing_options.h"
-#include "viewer/frame/views.h"
 #include "viewer/inputs/input.h"
 
 namespace lucarne {
@@ -115,13 +115,13 @@ Result<void> bench_frames(const bench::BenchRun& run) {
 
     // As in the window: new light in every frame, of which each makes a part.
     request.moving = true;
-    request.light_seconds = .03;
+    request.light_budget = gi::StepBudget::timed(.03);
     LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));
     LUCARNE_ASSIGN(const FrameTimes in_motion, moving_frames(*pipeline, request, run.frames(40), "", true));
     row("512x512, preset interactive, three bounces, light in steps", in_motion.wall, "ms", 120);
     row("the same, 95 % of the frames", in_motion.slow, "ms", 150);
     request.moving = false;
-    request.light_seconds = viewer::FrameRequest{}.light_seconds;
+    request.light_budget = {};
 
     LUCARNE_TRY(pipeline->set_engine("direct"));
     pipeline->set_budgets(

@@ -16,11 +16,11 @@
 #include <glm/vec4.hpp>
 
 #include "gi/scene/scene.h"
+#include "gi/scene/views.h"
 #include "io/core/parallel.h"
 #include "io/image/image.h"
 #include "io/synthetic/scene_geometry.h"
 #include "tests/bench/scan.h"
-#include "viewer/frame/views.h"
 
 namespace lucarne::bench {
 
@@ -76,7 +76,7 @@ class TrueView {
     };
 
     TrueView(const io::SceneGeometry& geometry, const gi::SceneCamera& camera, uint32_t side)
-        : view_(viewer::camera_view(camera, {side, side}, {})),
+        : view_(gi::camera_view(camera, {side, side}, {})),
           inner_(side - 2 * kMargin),
           pixels_(size_t{inner_} * inner_) {
         parallel_ranges(pixels_.size(), side, [&](size_t first, size_t last) {

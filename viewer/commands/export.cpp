@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,8 +12,6 @@
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/core/progress.h"
-#include "io/formats/copc/copc.h"
-#include "io/formats/scan.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/options/clip_options.h"
@@ -60,18 +59,6 @@ Result<gi::Look> seen(const Options& options) {
     return look;
 }
 
-Result<uint64_t> write(const octree::Exporter& exporter, const Options& options, uint64_t points) {
-    if (io::copc::is_name(options.output)) {
-        Progress progress("exporting", points, "points");
-        return exporter.write_copc(options.output, options.overwrite,
-                                   [&](uint64_t done) { progress.add(done); });
-    }
-    LUCARNE_ASSIGN(const auto writer, io::create_scan(options.output, exporter.schema(), exporter.info(),
-                                                      exporter.write_options(options.overwrite)));
-    Progress progress("exporting", points, "points");
-    return exporter.write(*writer, [&](uint64_t done) { progress.add(done); });
-}
-
 Result<void> export_cache(const Options& options) {
     LUCARNE_TRY(
         check_outputs({options.output.string()}, options.overwrite, {options.cache.string(), options.scene}));
@@ -90,7 +77,13 @@ Result<void> export_cache(const Options& options) {
     if (content.precision > 0) LUCARNE_TRY(octree::check_precision(header, content.precision));
     export_what_is_seen(look, header.schema, content);
     const octree::Exporter exporter(*source, content);
-    LUCARNE_ASSIGN(const uint64_t written, write(exporter, options, header.points));
+    std::optional<Progress> progress;  // none before an error
+    LUCARNE_ASSIGN(const uint64_t written,
+                   write_points(exporter, options.output, options.overwrite, [&](uint64_t done) {
+                       if (!progress) progress.emplace("exporting", header.points, "points");
+                       progress->add(done);
+                   }));
+    progress.reset();
     if (content.all_points())
         log::info("{}: {}", options.output.string(), counted(written, "points"));
     else

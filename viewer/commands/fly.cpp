@@ -135,6 +135,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     conditions.start.open_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
 
     FlightOptions how{drawing.size, !options.realtime, {}, options.overwrite};
+    how.site = loaded.site;
     how.flicker = options.flicker;
     how.changes = options.popping;
     how.soak = options.soak;

@@ -24,6 +24,7 @@
 #include "viewer/commands/options/input_options.h"
 #include "viewer/commands/options/outputs.h"
 #include "viewer/inputs/input.h"
+#include "viewer/opening/first_view.h"
 #include "viewer/publish/finished_picture.h"
 
 namespace lucarne::viewer {
@@ -189,6 +190,7 @@ Result<void> render(RenderOptions options) {
     LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, *source));
     FrameRequest request;
     LUCARNE_ASSIGN(request.camera, find_camera(loaded.scene, options.camera));
+    request.front_only = loaded.site && looks_in_from_outside(*loaded.site, request.camera);
     request.size = drawing.size;
     request.wait = true;
     request.accumulate = options.frames > 1 || options.seconds > 0;

@@ -15,6 +15,7 @@
 #include "viewer/flythrough/path.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
+#include "viewer/project/project.h"
 #include "viewer/window/view_session.h"
 
 namespace lucarne::viewer {
@@ -28,6 +29,7 @@ struct ViewOptions {
     double frame_time_ms = 100;
     bool overwrite = false;
     bool size_given = false;  ///< false: the window is as large as last time
+    std::string project;      ///< the INPUT, if it is a project
     bool says_what = false;   ///< the command line says what to show: the project stays out of it
 };
 
@@ -54,6 +56,28 @@ Result<void> check_scene(const ViewOptions& options) {
     return {};
 }
 
+/// Recognises a project among the inputs, and reports its errors before a window opens. Errors: it is not the
+/// only input; other options say what to show; none of its scans is there.
+Result<void> take_project(ViewOptions& options) {
+    auto& paths = options.input.paths;
+    const auto found = std::ranges::find_if(paths, [](const std::string& path) {
+        return std::filesystem::path(path).extension() == ".json" && is_project(path);
+    });
+    if (found == paths.end()) return {};
+    if (paths.size() > 1) return bad_arguments(*found, "is a project", "give it as the only input");
+    if (options.says_what)
+        return bad_arguments(*found, "is a project, which says what to show", "leave out the other options");
+    LUCARNE_ASSIGN(const Project project, read_project(*found, std::nullopt));
+    const std::filesystem::path file = absolute_path(*found);
+    const FoundScans scans = find_scans(project.scans, file.parent_path());
+    if (scans.found.empty())
+        return rejected(*found, scans.missing.empty() ? "names no scan" : "none of its scans was found",
+                        "put them beside it");
+    options.project = *found;
+    paths.clear();
+    return {};
+}
+
 ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     ViewModel model(1.0);
     model.view.method = {options.drawing.render.engine, drawing.preset.engine, drawing.preset.budgets};
@@ -62,6 +86,7 @@ ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     model.view.frame_time = options.frame_time_ms * 1e-3;
     model.view.caps = drawing.caps;
     model.scene_file.set_path(options.drawing.scene);
+    if (!options.project.empty()) model.commands.push(OpenProject{options.project});
     if (options.drawing.scene.empty())  // the background until there is a picture
         set_mood(model.view.scene, Mood::scan_colours, {}, {});
     if (!options.measurements.empty()) {
@@ -82,6 +107,7 @@ void take_settings(Settings settings, ViewModel& model) {
 }
 
 Result<void> view(ViewOptions options) {
+    LUCARNE_TRY(take_project(options));
     LUCARNE_TRY(take_render_settings(options.drawing));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     LUCARNE_TRY(check_scene(options));
@@ -156,7 +182,8 @@ void add_view(CommandLine& line) {
         options->size_given = command.given("--size");
         options->says_what = !command.given_only(
             {"INPUT", "--size", "--points", "--memory", "--device-memory", "--no-prefetch", "--no-cache",
-             "--frame-time", "--columns", "--unit", "--spacing", "--mesh-points", "--vertices", "--salvage"});
+             "--frame-time", "--screenshot", "--frames", "--overwrite", "--columns", "--unit", "--spacing",
+             "--mesh-points", "--vertices", "--salvage"});
         return view(*options);
     });
 }

@@ -1,7 +1,6 @@
 #include "viewer/flythrough/flight.h"
 
 #include <chrono>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "io/files/file.h"
 #include "viewer/frame/cost_model.h"
 #include "viewer/frame/rgba.h"
+#include "viewer/opening/first_view.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -158,10 +158,11 @@ struct Flying {
         return {};
     }
 
-    double light_seconds() const {
-        if (options.light_seconds) return *options.light_seconds;
-        if (options.wait) return std::numeric_limits<double>::infinity();
-        return kLightShare * (options.frame_time > 0 ? options.frame_time : kUsualFrameTime);
+    gi::StepBudget light_budget() const {
+        if (options.light_seconds) return gi::StepBudget::timed(*options.light_seconds);
+        if (options.wait) return {};
+        return gi::StepBudget::timed(kLightShare *
+                                     (options.frame_time > 0 ? options.frame_time : kUsualFrameTime));
     }
 
     Result<void> draw(double time, size_t lap) {
@@ -170,7 +171,8 @@ struct Flying {
         request.size = options.size;
         request.wait = options.wait;
         request.moving = true;
-        request.light_seconds = light_seconds();
+        request.front_only = options.site && looks_in_from_outside(*options.site, request.camera);
+        request.light_budget = light_budget();
         FlownFrame frame;
         frame.time = time;
         frame.lap = lap;

@@ -8,6 +8,7 @@
 #include "io/image/image.h"
 #include "viewer/flythrough/path.h"
 #include "viewer/flythrough/report.h"
+#include "viewer/opening/site.h"
 
 namespace lucarne::viewer {
 
@@ -27,9 +28,11 @@ struct FlightOptions {
     /// Target time of a frame, s. Without `wait`, the budgets of cuts follow it (cost_model.h). 0: budgets
     /// are fixed.
     double frame_time = 0;
-    /// Time of each frame for making light that outlasts it, s (FrameRequest::light_seconds). By default
+    /// Time of each frame for making light that outlasts it, s (FrameRequest::light_budget). By default
     /// unlimited with `wait`, and kLightShare of the frame's time otherwise.
     std::optional<double> light_seconds;
+    /// What the scan shows: outside its rooms, points that face away are not drawn. None: all points are.
+    std::optional<Site> site;
 };
 
 struct Flight {

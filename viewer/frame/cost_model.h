@@ -43,7 +43,7 @@ class CostModel {
     std::map<std::string, std::deque<Sample>, std::less<>> passes_;
 };
 
-/// The share of a frame's time in which light that outlasts the frame is made (FrameRequest::light_seconds).
+/// The share of a frame's time in which light that outlasts the frame is made (FrameRequest::light_budget).
 inline constexpr double kLightShare = 0.3;
 
 /// Chooses budgets that keep frames to a target time. The view's budget changes from frame to frame. A change

@@ -8,7 +8,7 @@
 
 #include <glm/common.hpp>
 
-#include "viewer/frame/views.h"
+#include "gi/scene/views.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -66,8 +66,8 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
     using Points = std::optional<uint64_t>;
     const CutBudgets& budgets = purpose.budgets;
     const auto light_view = [&](size_t i, Points points) {
-        return light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
-                              points.value_or(budgets.light_view));
+        return gi::light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
+                                  points.value_or(budgets.light_view));
     };
     // The focus moves in steps, so that bounced light does not shimmer while the camera moves.
     const auto& root = purpose.source.header().root;
@@ -80,21 +80,24 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
         return octree::light_cut(purpose.source, focus, points.value_or(budgets.light), lamps,
                                  purpose.extent);
     };
-    octree::View eye = octree_view(purpose.camera, purpose.size);
+    octree::View eye = gi::octree_view(purpose.camera, purpose.size);
     if (purpose.clip && purpose.clip->active())
         eye.wanted = [&](const octree::Cube& cube) { return kept(*purpose.clip, cube) != gi::Kept::none; };
     const auto view = [&](size_t, Points points) {
         return octree::view_cut(purpose.source, eye, points.value_or(budgets.view), budgets.pixel_spacing);
     };
     CutSet whole;
-    for (size_t i = 0; i < purpose.lights.size(); ++i) whole.light_views.push_back(light_view(i, {}));
-    whole.light = light(0, {});
+    whole.needs = purpose.needs;
+    if (purpose.needs.light_views)
+        for (size_t i = 0; i < purpose.lights.size(); ++i) whole.light_views.push_back(light_view(i, {}));
+    if (purpose.needs.light_cut) whole.light = light(0, {});
     whole.view = view(0, {});
     whole.share = 1;
     if (fits(purpose, whole, room)) return whole;
 
     // Makes some of the cuts at full size, then with fewer and fewer points until they fit.
     CutSet cuts;
+    cuts.needs = purpose.needs;
     const auto choose = [&](double part, int& step, std::span<octree::Cut> chosen,
                             std::span<const octree::Cut> wanted, const auto& make) {
         const CutRoom part_of_room{static_cast<uint64_t>(part * static_cast<double>(room.bytes)), room.cost};
@@ -107,9 +110,10 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
         step = least_step(step, make_at);
         make_at(step);
     };
-    cuts.light_views.resize(purpose.lights.size());
+    cuts.light_views.resize(whole.light_views.size());
     choose(kLightViewRoom, light_view_step_, cuts.light_views, whole.light_views, light_view);
-    choose(kLightRoom, light_step_, std::span(&cuts.light, 1), std::span(&whole.light, 1), light);
+    if (purpose.needs.light_cut)
+        choose(kLightRoom, light_step_, std::span(&cuts.light, 1), std::span(&whole.light, 1), light);
     choose(1, view_step_, std::span(&cuts.view, 1), std::span(&whole.view, 1), view);
     cuts.share =
         static_cast<double>(cuts.points()) / static_cast<double>(std::max<uint64_t>(whole.points(), 1));

@@ -11,10 +11,11 @@
 
 namespace lucarne::viewer {
 
-/// The cuts of a frame.
+/// The cuts of a frame. Those that the engines do not need are empty.
 struct CutSet {
+    gi::EngineNeeds needs;
     octree::Cut view, light;
-    std::vector<octree::Cut> light_views;  ///< one for each light
+    std::vector<octree::Cut> light_views;  ///< one for each light, or none
     double share = 1;  ///< share of the points that the cuts would have without a limit of room
 
     std::vector<const octree::Cut*> all() const;
@@ -26,6 +27,7 @@ struct CutPurpose {
     const octree::NodeSource& source;
     const gi::SceneCamera& camera;
     ImageSize size;
+    gi::EngineNeeds needs;  ///< of all engines that draw the frame
     const std::vector<gi::SceneLight>& lights;
     uint32_t light_resolution;
     CutBudgets budgets;

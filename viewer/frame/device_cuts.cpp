@@ -5,24 +5,18 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr uint64_t kPointsOfFilled = 4;  // for each synthetic surfel a cut has at least so many points
-
 bool contains(const gi::DeviceCut& cut, uint32_t node) {
     return std::ranges::binary_search(cut.nodes(), node, {}, &gi::CutNode::node);
 }
 
-Result<void> build_cut(const octree::Cut& cut, const CutParts& from, const gi::Clip& clip,
+Result<void> build_cut(const octree::Cut& cut, const CutInputs& from, const gi::Clip& clip,
                        gi::DeviceCut& target) {
     std::vector<gi::CutEntry> entries;
     entries.reserve(cut.nodes.size());
     for (const auto& node : cut.nodes) entries.push_back({node.node, node.count});
-    // A cut of few points, as a cap asks for, stays small: the synthetic surfels have no levels of detail.
-    uint64_t filled = 0;
-    for (const octree::Filling& filling : from.fillings)
-        for (const octree::NodeInfo& node : filling.nodes) filled += node.count;
-    const bool none = from.scene.look.open_holes || kPointsOfFilled * filled > cut.points;
-    return from.pool.make_cut(from.device, from.source, entries, from.origin, target, clip,
-                              none ? from.fillings.first(0) : from.fillings);
+    const auto fillings =
+        from.scene.look.open_holes ? from.fillings.first(0) : gi::fillings_of(from.fillings, cut.points);
+    return from.pool.make_cut(from.device, from.source, entries, from.origin, target, clip, fillings);
 }
 
 }  // namespace
@@ -34,29 +28,33 @@ void DeviceCuts::node_gone(uint32_t node) {
 }
 
 bool DeviceCuts::intact(const CutSet& chosen, const gi::Scene& scene) const {
-    return !torn_ && light_views_.size() == chosen.light_views.size() &&
+    return !torn_ && needs_ == chosen.needs && light_views_.size() == chosen.light_views.size() &&
            lights_.size() == scene.lights.size();
 }
 
-Result<bool> DeviceCuts::build(const CutSet& chosen, const CutParts& from, bool hold_light) {
+Result<bool> DeviceCuts::build(const CutSet& chosen, const CutInputs& from, bool hold_light) {
     const bool hold = hold_light && intact(chosen, from.scene);
     if (!stale_ && (!light_stale_ || hold)) return false;
     const gi::Clip& clip = from.scene.look.clip;
     const gi::Clip lights_clip = clip.casts ? gi::Clip{} : clip;
     LUCARNE_TRY(build_cut(chosen.view, from, clip, view_));
-    if (!hold) LUCARNE_TRY(build_cut(chosen.light, from, lights_clip, light_));
+    if (!chosen.needs.light_cut)
+        light_ = {};
+    else if (!hold)
+        LUCARNE_TRY(build_cut(chosen.light, from, lights_clip, light_));
     light_views_.resize(chosen.light_views.size());
     for (size_t i = 0; i < light_views_.size(); ++i)
         if (!hold || !(lights_[i] == from.scene.lights[i]))
             LUCARNE_TRY(build_cut(chosen.light_views[i], from, lights_clip, light_views_[i]));
     lights_ = from.scene.lights;
+    needs_ = chosen.needs;
     stale_ = torn_ = false;
     light_stale_ = hold;
     return true;
 }
 
 gi::FrameCuts DeviceCuts::of_frame() const {
-    gi::FrameCuts cuts{&view_, {}, &light_};
+    gi::FrameCuts cuts{&view_, {}, needs_.light_cut ? &light_ : nullptr};
     for (const gi::DeviceCut& cut : light_views_) cuts.light_views.push_back(&cut);
     return cuts;
 }

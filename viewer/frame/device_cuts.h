@@ -15,7 +15,7 @@
 namespace lucarne::viewer {
 
 /// What cuts on the device are built from.
-struct CutParts {
+struct CutInputs {
     gi::Device& device;
     const gi::SurfelPool& pool;
     const octree::NodeSource& source;
@@ -36,16 +36,18 @@ class DeviceCuts {
     /// A node was evicted or replaced.
     void node_gone(uint32_t node);
 
-    /// Builds what has changed. `hold_light`: the light's cuts stay if they can, but for the views of lights
-    /// that have changed. Returns whether anything was built. Errors: no device memory.
-    Result<bool> build(const CutSet& chosen, const CutParts& from, bool hold_light);
+    /// Builds what has changed and what the engines need. `hold_light`: the light's cuts stay if they can,
+    /// but for the views of lights that have changed. Returns whether anything was built. Errors: no device
+    /// memory.
+    Result<bool> build(const CutSet& chosen, const CutInputs& from, bool hold_light);
 
     const gi::DeviceCut& view() const { return view_; }
     /// The cuts of a frame, which stay valid until the next build().
     gi::FrameCuts of_frame() const;
-    /// Points drawn by the views of all lights; drawn by all cuts, with those that are clipped as whole
-    /// nodes.
+    /// Points drawn by the views of all lights; of the light cut; drawn by all cuts, with those that are
+    /// clipped as whole nodes.
     uint64_t light_view_points() const;
+    uint64_t light_points() const { return light_.surfels(); }
     uint64_t ready_points() const;
 
  private:
@@ -53,6 +55,7 @@ class DeviceCuts {
 
     gi::DeviceCut view_, light_;
     std::vector<gi::DeviceCut> light_views_;
+    gi::EngineNeeds needs_;               ///< for which all were chosen
     std::vector<gi::SceneLight> lights_;  ///< for which light_views_ were chosen
     bool stale_ = true, light_stale_ = true, torn_ = true;
 };

@@ -36,6 +36,7 @@ struct PictureWorker::State {
     std::optional<WorkerDevice> next_device;
     gi::DeviceInfo device;
     bool stop = false;
+    bool prepared = false;              ///< the engine's precomputation has news
     std::atomic<bool> give_up = false;  ///< the picture that is being made
     bool may_give_up = false;           ///< whether it may be, for one of a motion
     std::function<void()> published;
@@ -173,6 +174,13 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
     } else {
         told = {};
         LUCARNE_ASSIGN(pipeline, Pipeline::open(gl, other, options));
+        pipeline->on_prepared([this] {
+            {
+                const std::lock_guard lock(mutex);
+                prepared = true;
+            }
+            changed.notify_all();
+        });
     }
     shown = std::move(other);
     return {};
@@ -189,9 +197,11 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
         std::optional<std::shared_ptr<const octree::NodeSource>> other;
         {
             std::unique_lock lock(mutex);
-            changed.wait(
-                lock, [&] { return stop || next_source || (shown && (again || wanted_number != made_of)); });
+            changed.wait(lock, [&] {
+                return stop || next_source || (shown && (again || prepared || wanted_number != made_of));
+            });
             if (stop) return {};
+            prepared = false;
             other = std::exchange(next_source, std::nullopt);
             if (other) last_source = *other;
             request = wanted;

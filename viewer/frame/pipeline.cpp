@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <numeric>
 #include <span>
 
 #include <fmt/format.h>
@@ -13,71 +12,48 @@
 #include "gi/lighting/light_options.h"
 #include "gi/raster/blend.h"
 #include "gi/registry.h"
-#include "gi/surfels/baked_light.h"
-#include "gi/surfels/colouring.h"
+#include "gi/scene/views.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "octree/stream/motion.h"
-#include "octree/stream/residency.h"
 #include "octree/tree/robust_bounds.h"
 #include "viewer/frame/cut_choice.h"
 #include "viewer/frame/device_cuts.h"
-#include "viewer/frame/prepare.h"
+#include "viewer/frame/engine_bake.h"
 #include "viewer/frame/presentation.h"
-#include "viewer/frame/views.h"
+#include "viewer/frame/surfel_stream.h"
 
 namespace lucarne::viewer {
 namespace {
 
-using Stream = octree::Residency<PackedNode>;
+constexpr double kGapsPerPoint = 2;  // gaps that are filled: half their width, in diameters of points
+constexpr double kAhead = 0.5;       // s of the camera's motion that are loaded ahead
 
-// Time in which a frame without `wait` accepts arrived nodes, s: enough for about a hundred nodes, which the
-// loading threads have packed.
-constexpr double kLoadingTime = 0.002;
-constexpr size_t kNodesAtOnce = 8;  // nodes accepted between two looks at the clock
-constexpr double kAhead = 0.5;      // s of the camera's motion that are loaded ahead
-// Share of the device's memory for surfels. The shadow maps hold the light cut's surfels a second time;
-// pictures and maps take the rest.
-constexpr double kPoolShare = 0.375;
-constexpr double kFilledShare = 0.25;                  // of the pool: the most that synthetic surfels take
-constexpr uint64_t kLeastTransit = uint64_t{1} << 20;  // enough for some nodes of usual size
-
-uint64_t pages(uint64_t surfels) {
-    constexpr uint64_t kPage = gi::SurfelPool::kPageSurfels;
-    return (surfels + kPage - 1) / kPage;
-}
 bool stopped(const FrameRequest& request) {
     return request.stop && *request.stop;
 }
-uint64_t pool_bytes(uint64_t surfels) {
-    return pages(surfels) * gi::SurfelPool::kPageSurfels * sizeof(gi::PackedSurfel);
-}
-
 }  // namespace
 
 struct Pipeline::State {
     State(gi::Device& on, const PipelineOptions& how)
-        : device(on), options(how), times(on), presentation(on) {}
+        : device(on),
+          options(how),
+          times(on),
+          surfels(on, {how.memory, how.device_memory, how.load_threads}, cuts),
+          presentation(on) {}
 
     Result<void> take_source(std::shared_ptr<const octree::NodeSource> from);
-    Result<void> colour_anew();
-    void empty_pool();
-    void start_stream();
+    gi::EngineNeeds needs(const FrameRequest& request) const;
     void choose_cuts(const FrameRequest& request);
+    void update_bake();
+    Result<void> take_bake(const FrameRequest& request);
     void look_ahead(const FrameRequest& request);
     Result<void> stream(const FrameRequest& request);
-    Result<void> take_arrivals(bool wait);
-    Result<void> apply(std::span<const Stream::Event> events);
-    uint64_t pool_surfels() const;
-    void take_fillings();
-    Result<void> load_fillings();
-    uint64_t filled_bytes() const;
     Result<void> build_cuts(bool hold_light);
     Result<gi::Engine*> drawing_engine(const FrameRequest& request);
     Result<void> draw(gi::Engine& drawing, const FrameRequest& request);
     Result<void> draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target);
     Result<void> make_picture(const FrameRequest& request);
-    bool shrink_pool();
     FrameStats stats(double seconds) const;
 
     gi::Device& device;
@@ -86,15 +62,6 @@ struct Pipeline::State {
     PipelineOptions options;
     gi::PassTimes times;
 
-    std::shared_ptr<SurfelPreparation> preparation;
-    std::unique_ptr<Stream> residency;
-    bool repack = true;  // the surfels' part of scene or look (materials, colours) has changed
-    gi::ShownValues values;
-    std::optional<gi::BakedLight> baked;  ///< of the source, once it was needed
-    gi::SurfelPool pool;
-    /// The synthetic surfels of the source. They are always resident, or left out.
-    std::vector<octree::Filling> fillings;
-    uint64_t bytes_loaded = 0;
     std::string lost_node;  // why the first unreadable node of the source cannot be read
 
     CutChooser chooser;
@@ -102,7 +69,11 @@ struct Pipeline::State {
     octree::Motion motion;
     std::vector<octree::Cut> ahead;  // view cuts for the camera's future positions
     DeviceCuts cuts;
-    LocalFrame local;
+    SurfelStream surfels;
+    EngineBake bake;
+    uint64_t bake_version = 0;  // of the last frame
+    gi::BakeJob::Status baked;  // of this frame
+    gi::LocalFrame local;
 
     std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
     std::unique_ptr<gi::Engine> stand_in;       ///< once it was needed (FrameRequest::stand_in)
@@ -116,185 +87,74 @@ struct Pipeline::State {
     FrameRequest last;
     double last_seconds = 0;  // duration of the last frame
     double most_pixels = 0;   // FrameRequest::most_pixels of the last frame
+    bool front_only = false;  // FrameRequest::front_only of the last frame
     gi::CameraView camera{};
     gi::GBuffer gbuffer;
     Presentation presentation;
 };
 
-/// Returns the size of the pool: what the caps allow, but at most the whole cloud.
-uint64_t Pipeline::State::pool_surfels() const {
-    uint64_t whole = 0, largest = 0;
-    for (const octree::NodeInfo& node : source->nodes()) {
-        whole += pool_bytes(node.count);
-        largest = std::max(largest, pool_bytes(node.count));
-    }
-    whole += filled_bytes();
-    // Room for recoloured nodes that arrive before the old ones are freed.
-    whole += (options.load_threads + 1) * largest;
-    const auto share = static_cast<uint64_t>(kPoolShare * static_cast<double>(options.device_memory));
-    const uint64_t bytes = std::min({whole, share, device.info().max_texel_bytes});
-    return std::min<uint64_t>(bytes / sizeof(gi::PackedSurfel), UINT32_MAX);
-}
-
-void Pipeline::State::empty_pool() {
-    residency.reset();
-    if (!source) return;
-    for (uint32_t node = 0; node < source->nodes().size(); ++node)
-        if (pool.holds(node)) pool.evict(node);
-    for (uint32_t node = gi::kFirstFilled; pool.holds(node); ++node) pool.evict(node);
-}
-
-/// Bytes of the pool that the synthetic surfels take.
-uint64_t Pipeline::State::filled_bytes() const {
-    uint64_t bytes = 0;
-    for (const octree::Filling& filling : fillings)
-        for (const octree::NodeInfo& node : filling.nodes) bytes += pool_bytes(node.count);
-    return bytes;
-}
-
-/// Loads the source's synthetic surfels, for load_fillings(). Without them there are holes, but a picture.
-void Pipeline::State::take_fillings() {
-    fillings.clear();
-    auto loaded = source->fillings();
-    if (loaded)
-        fillings = std::move(*loaded);
-    else
-        log::warn("{}; holes of the scan stay open", loaded.error().line());
-}
-
-/// Packs the synthetic surfels for the device.
-Result<void> Pipeline::State::load_fillings() {
-    uint32_t number = gi::kFirstFilled;
-    for (const octree::Filling& filling : fillings)
-        for (uint32_t node = 0; node < filling.nodes.size(); ++node) {
-            LUCARNE_ASSIGN(const bool fits, pool.load(number++, preparation->pack(filling, node)));
-            if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
-        }
-    cuts.tear();
-    return {};
-}
-
 Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSource> from) {
-    if (const uint64_t bytes = from->directory_bytes(); options.memory < bytes + kLeastTransit)
-        return bad_arguments("--memory",
-                             fmt::format("{} are too little: the directory of the octree alone takes {}",
-                                         bytes_text(options.memory), bytes_text(bytes)),
-                             "allow more");
-    empty_pool();
+    LUCARNE_TRY(surfels.set_source(from, scene));
     source = std::move(from);
-    lost_node.clear();
-    baked.reset();
     bounds = octree::robust_bounds(*source);
-    take_fillings();
-    const uint64_t capacity = pool_surfels();
-    if (capacity > pool.capacity()) {
-        pool = {};
-        LUCARNE_ASSIGN(pool, gi::SurfelPool::create(device, static_cast<uint32_t>(capacity)));
-    }
-    start_stream();
+    lost_node.clear();
     changed = fresh = true;
     return {};
 }
 
-/// Starts the stream with nothing resident. What fits the stream's cap also fits the pool, because a node
-/// costs the same pages in both.
-void Pipeline::State::start_stream() {
-    empty_pool();
-    if (static_cast<double>(filled_bytes()) >
-        kFilledShare * static_cast<double>(pool_bytes(pool.capacity()))) {
-        log::warn("there is too little device memory to fill the holes of the scan");
-        fillings.clear();
-    }
-    octree::ResidencyOptions how;
-    how.memory = pool_bytes(pool.capacity()) - filled_bytes();
-    how.transit = options.memory - source->directory_bytes();
-    how.threads = options.load_threads;
-    how.cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
-    preparation = std::make_shared<SurfelPreparation>(source, scene);
-    octree::Preparation<PackedNode> pack;
-    pack.make = [packing = preparation](uint32_t node, octree::NodeData&& data) {
-        return packing->pack(node, data);
-    };
-    pack.most_bytes = [](const octree::NodeInfo& node) {
-        return uint64_t{node.count} * sizeof(gi::PackedSurfel);
-    };
-    repack = true;
-    residency = std::make_unique<Stream>(*source, how, std::move(pack));
-    cuts.tear();
-}
-
-/// Loads all resident nodes again for new materials or colours, which are packed into the surfels. Nodes are
-/// replaced one by one while the old ones are drawn.
-Result<void> Pipeline::State::colour_anew() {
-    repack = false;
-    values = gi::measured_values(*source, scene.look);
-    gi::Scene shown = scene;
-    shown.look.range = values.range;
-    if (scene.albedo.flatten > 0 && !baked) {
-        LUCARNE_ASSIGN(baked, gi::BakedLight::measured(*source));
-    }
-    preparation->set_scene(shown, baked ? &*baked : nullptr);
-    LUCARNE_TRY(load_fillings());
-    std::vector<uint32_t> all(source->nodes().size());
-    std::iota(all.begin(), all.end(), 0u);
-    residency->renew(all);
-    return {};
+/// Returns what the engines read that draw the frame, and the one that may stand in when the camera moves:
+/// its nodes must be there then.
+gi::EngineNeeds Pipeline::State::needs(const FrameRequest& request) const {
+    gi::EngineNeeds all = engine->info().needs;
+    if (other) all = all | other->info().needs;
+    if (!request.wait && engine->info().reports_progress) all = all | gi::default_engine().needs;
+    return all;
 }
 
 void Pipeline::State::choose_cuts(const FrameRequest& request) {
-    const CutPurpose purpose{*source,
-                             request.camera,
-                             request.size,
-                             scene.lights,
-                             settings[gi::kLightResolution],
-                             budgets,
-                             glm::distance(bounds[0], bounds[1]),
+    const CutPurpose purpose{*source,         request.camera,
+                             request.size,    needs(request),
+                             scene.lights,    settings[gi::kLightResolution],
+                             budgets,         glm::distance(bounds[0], bounds[1]),
                              &scene.look.clip};
-    chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()) - filled_bytes(),
-                                      [](const auto& node) { return pool_bytes(node.count); }});
+    chosen = chooser.choose(purpose, surfels.room());
     const glm::dvec3 origin = local.origin;
-    local = local_frame(request.camera.position, source->header().metres_per_unit);
+    local = gi::local_frame(request.camera.position, source->header().metres_per_unit);
     if (local.origin != origin) cuts.tear();
-    camera = camera_view(request.camera, request.size, local);
+    camera = gi::camera_view(request.camera, request.size, local);
     cuts.changed();
+}
+
+void Pipeline::State::update_bake() {
+    bake.update({engine->info(), source, bounds, surfels, scene, settings, budgets.light});
+}
+
+/// Takes what the engine has computed in advance so far; with `wait` all of it. Without `wait` a failure is a
+/// warning, and the engine draws without it.
+Result<void> Pipeline::State::take_bake(const FrameRequest& request) {
+    update_bake();
+    if (!bake.running()) {
+        baked = {};
+        return {};
+    }
+    if (request.wait) LUCARNE_TRY(bake.wait(request.stop, nullptr));
+    const bool failed_before = baked.ended && !baked.error;
+    baked = bake.status();
+    if (baked.ended && !baked.error && !failed_before)
+        log::warn("{}; the picture is made without it", baked.error.error().line());
+    if (std::exchange(bake_version, baked.version) != baked.version) presentation.restart();
+    return {};
 }
 
 /// Chooses cuts for what the camera will see if it continues its motion.
 void Pipeline::State::look_ahead(const FrameRequest& request) {
     ahead.clear();
     if (request.wait || !request.moving || !options.prefetch) return motion.forget();
-    motion.observe(octree_view(request.camera, request.size));
+    motion.observe(gi::octree_view(request.camera, request.size));
     const double frames = std::clamp(kAhead / std::max(last_seconds, 1e-3), 2.0, 30.0);
     for (const double part : {0.5, 1.0})
         if (const auto view_there = motion.ahead(part * frames))
             ahead.push_back(octree::view_cut(*source, *view_there, budgets.view, budgets.pixel_spacing));
-}
-
-/// Applies the stream's events to the device.
-Result<void> Pipeline::State::apply(std::span<const Stream::Event> events) {
-    for (const Stream::Event& event : events) {
-        cuts.changed();
-        if (event.kind != Stream::Kind::loaded) {
-            pool.evict(event.node);
-            cuts.node_gone(event.node);
-        }
-        if (event.kind == Stream::Kind::evicted) continue;
-        bytes_loaded += source->nodes()[event.node].payload_bytes;
-        LUCARNE_ASSIGN(const bool fits, pool.load(event.node, *event.data));
-        if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
-    }
-    return {};
-}
-
-/// Accepts arrived nodes; with `wait` all of them.
-Result<void> Pipeline::State::take_arrivals(bool wait) {
-    const auto start = std::chrono::steady_clock::now();
-    for (;;) {
-        const auto events = residency->poll(kNodesAtOnce);
-        LUCARNE_TRY(apply(events));
-        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-        if (events.empty() || (!wait && spent.count() > kLoadingTime)) return {};
-    }
 }
 
 /// Loads nodes of the chosen cuts; with `wait` as many as the caps allow.
@@ -302,12 +162,8 @@ Result<void> Pipeline::State::stream(const FrameRequest& request) {
     const bool wait = request.wait || fresh;
     std::vector<const octree::Cut*> later;
     for (const octree::Cut& cut : ahead) later.push_back(&cut);
-    residency->want(chosen.all(), later);
-    for (bool all = false; !all;) {
-        all = !wait || residency->wait();
-        LUCARNE_TRY(take_arrivals(wait));
-    }
-    const auto error = residency->take_error();
+    LUCARNE_TRY(surfels.load(chosen.all(), later, wait));
+    const auto error = surfels.take_error();
     if (error) return {};
     if (request.wait) return error;
     if (lost_node.empty()) lost_node = error.error().line();
@@ -318,7 +174,7 @@ Result<void> Pipeline::State::stream(const FrameRequest& request) {
 /// Builds the cuts that have changed; the picture's average starts again then.
 Result<void> Pipeline::State::build_cuts(bool hold_light) {
     times.begin("upload of cuts");
-    const CutParts from{device, pool, *source, fillings, scene, local.origin};
+    const CutInputs from{device, surfels.pool(), *source, surfels.fillings(), scene, local.origin};
     LUCARNE_ASSIGN(const bool built, cuts.build(chosen, from, hold_light));
     times.end();
     if (built) presentation.restart();
@@ -337,9 +193,9 @@ Result<gi::Engine*> Pipeline::State::drawing_engine(const FrameRequest& request)
 /// Draws the G-buffer and lights it.
 Result<void> Pipeline::State::draw(gi::Engine& drawing, const FrameRequest& request) {
     times.begin("G-buffer");
-    const gi::PointSize size{static_cast<float>(scene.look.point_size),
-                             static_cast<float>(scene.look.point_pixels),
-                             static_cast<float>(request.most_pixels)};
+    const gi::PointSize size{
+        static_cast<float>(scene.look.point_size), static_cast<float>(scene.look.point_pixels),
+        static_cast<float>(request.most_pixels), scene.look.front_only || request.front_only};
     LUCARNE_TRY(gi::rasterize(device, cuts.view(), camera, gbuffer, size));
     times.end();
     if (!scene.look.single_discs) {
@@ -356,12 +212,12 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
     const size_t pixels = size_t{request.size.width} * request.size.height;
     LUCARNE_TRY(device.reserve(target, pixels * sizeof(glm::vec4), "the picture's radiance"));
     std::vector<gi::Light> lights;
-    for (const gi::SceneLight& light : scene.lights) lights.push_back(device_light(light, local));
+    for (const gi::SceneLight& light : scene.lights) lights.push_back(gi::device_light(light, local));
     const auto& header = source->header();
     std::vector<gi::Material> materials;
     for (const auto& material : scene.materials)
-        materials.push_back(device_material(material, scene.albedo.scale));
-    gi::GlFrame on_device{device, pool, cuts.of_frame(), gbuffer, target};
+        materials.push_back(gi::device_material(material, scene.albedo.scale));
+    gi::GlFrame on_device{device, surfels.pool(), cuts.of_frame(), gbuffer, target};
     gi::Frame frame{.camera = camera,
                     .lights = lights,
                     .materials = materials,
@@ -371,7 +227,9 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
                     .environment = scene.environment,
                     .bounds = {local.to_local(header.min), local.to_local(header.max)},
                     .moving = request.moving,
-                    .light_seconds = request.light_seconds,
+                    .light_budget = request.light_budget,
+                    .bake = &drawing == engine.get() ? baked.bake.get() : nullptr,
+                    .bake_offset = glm::vec3((bake.frame().origin - local.origin) * local.metres_per_unit),
                     .stop = request.stop,
                     .progress = request.progress,
                     .unlit = scene.look.unlit,
@@ -386,30 +244,21 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.end();
     LUCARNE_ASSIGN(gi::Engine* const drawing, drawing_engine(request));
     LUCARNE_TRY(build_cuts(drawing->reads_light_cuts()));
-    const bool other_points = std::exchange(most_pixels, request.most_pixels) != request.most_pixels;
-    if (!request.accumulate || !presentation.averaged() || other_points) presentation.restart();
+    LUCARNE_TRY(take_bake(request));
+    const bool other_sizes = std::exchange(most_pixels, request.most_pixels) != request.most_pixels;
+    const bool other_sides = std::exchange(front_only, request.front_only) != request.front_only;
+    if (!request.accumulate || !presentation.averaged() || other_sizes || other_sides) presentation.restart();
     const bool shifted = request.accumulate && request.antialiased;
-    shift_rays(camera, shifted ? presentation.accumulated() : 0);
+    gi::shift_rays(camera, shifted ? presentation.accumulated() : 0);
     LUCARNE_TRY(draw(*drawing, request));
     if (stopped(request)) return {};
     times.begin("tone map");
     presentation.follow_exposure(request.exposure_seconds);
     LUCARNE_TRY(presentation.finish(*drawing, other.get(), scene, gbuffer,
-                                    {request.accumulate, request.transparent}));
+                                    {request.accumulate, request.transparent,
+                                     static_cast<uint32_t>(kGapsPerPoint * request.most_pixels)}));
     times.end();
     return {};
-}
-
-/// Frees a quarter of the pool. Returns false if little of it is left.
-bool Pipeline::State::shrink_pool() {
-    const uint64_t capacity = uint64_t{pool.capacity()} * 3 / 4;
-    if (capacity < pool_surfels() / 16 + gi::SurfelPool::kPageSurfels) return false;
-    pool = {};
-    auto smaller = gi::SurfelPool::create(device, static_cast<uint32_t>(capacity));
-    if (!smaller) return false;
-    pool = std::move(*smaller);
-    start_stream();
-    return true;
 }
 
 FrameStats Pipeline::State::stats(double seconds) const {
@@ -417,12 +266,15 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.passes = times.passes();
     result.seconds = seconds;
     result.view_points = cuts.view().surfels();
-    result.light_points = cuts.of_frame().light->surfels();
+    result.light_points = cuts.light_points();
     result.light_view_points = cuts.light_view_points();
     result.wanted_points = chosen.points();
     result.ready_points = cuts.ready_points();  // clipped nodes count as drawn
-    result.bytes_loaded = bytes_loaded;
-    const octree::ResidencyStats streamed = residency->stats();
+    result.bytes_loaded = surfels.bytes_loaded();
+    const octree::ResidencyStats streamed = surfels.stats();
+    if (bake.running()) result.prepared = baked.share;
+    result.preparing = baked.step;
+    if (!baked.error) result.not_prepared = baked.error.error().line();
     result.nodes_pending = streamed.pending;
     result.nodes_lost = streamed.lost;
     result.lost_node = lost_node;
@@ -490,7 +342,7 @@ glm::dvec3 Pipeline::local_origin() const {
     return state_->local.origin;
 }
 const gi::ShownValues& Pipeline::values() const {
-    return state_->values;
+    return state_->surfels.values();
 }
 double Pipeline::exposure_ev() const {
     return state_->presentation.exposure_ev();
@@ -519,6 +371,20 @@ Result<void> Pipeline::set_engine(std::string_view name) {
     LUCARNE_ASSIGN(state_->engine, gi::make_engine(name));
     state_->changed = true;
     return {};
+}
+
+void Pipeline::on_prepared(std::function<void()> published) {
+    state_->bake.on_news(std::move(published));
+}
+
+Result<std::filesystem::path> Pipeline::prepare(Progress* progress) {
+    State& state = *state_;
+    if (!state.engine) LUCARNE_TRY(set_engine(gi::default_engine().name));
+    LUCARNE_TRY(state.surfels.renew(state.scene));
+    state.update_bake();
+    LUCARNE_TRY(state.bake.wait(nullptr, progress));
+    LUCARNE_TRY(state.bake.status().keeping);
+    return state.bake.file();
 }
 
 Result<void> Pipeline::set_method(const Method& method) {
@@ -550,11 +416,12 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
         state_->changed = true;
     }
     // A point's material and colour are packed into its surfel.
-    state_->repack |= !std::ranges::equal(scene.materials, state_->scene.materials, {},
-                                          &gi::SceneMaterial::assignment, &gi::SceneMaterial::assignment) ||
-                      !gi::same_colours(scene.look, state_->scene.look) ||
-                      scene.albedo.flatten != state_->scene.albedo.flatten ||
-                      scene.albedo.balance != state_->scene.albedo.balance;
+    if (!std::ranges::equal(scene.materials, state_->scene.materials, {}, &gi::SceneMaterial::assignment,
+                            &gi::SceneMaterial::assignment) ||
+        !gi::same_colours(scene.look, state_->scene.look) ||
+        scene.albedo.flatten != state_->scene.albedo.flatten ||
+        scene.albedo.balance != state_->scene.albedo.balance)
+        state_->surfels.make_stale();
     state_->changed |= scene.light_inputs() != state_->scene.light_inputs();
     if (!(scene.look.clip == state_->scene.look.clip) ||
         scene.look.open_holes != state_->scene.look.open_holes)
@@ -568,9 +435,10 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     const auto start = std::chrono::steady_clock::now();
     state.times.clear();
     if (!state.engine) LUCARNE_TRY(set_engine(gi::default_engine().name));
-    if (state.repack) LUCARNE_TRY(state.colour_anew());
+    LUCARNE_TRY(state.surfels.renew(state.scene));
     state.times.begin("cuts");
-    if (state.changed || request.camera != state.last.camera || request.size != state.last.size) {
+    if (state.changed || request.camera != state.last.camera || request.size != state.last.size ||
+        state.needs(request) != state.chosen.needs) {
         state.choose_cuts(request);
         state.presentation.restart();
     }
@@ -578,7 +446,8 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     state.times.end();
     for (auto made = state.make_picture(request); !made; made = state.make_picture(request)) {
         // Pictures and maps may need more memory than the pool leaves.
-        if (!state.device.take_refusal() || !state.shrink_pool()) return tl::make_unexpected(made.error());
+        if (!state.device.take_refusal() || !state.surfels.shrink(state.scene))
+            return tl::make_unexpected(made.error());
         state.choose_cuts(request);
     }
     LUCARNE_TRY(state.device.check());

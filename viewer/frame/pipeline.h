@@ -1,7 +1,8 @@
 #pragma once
 
 #include <atomic>
-#include <limits>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,11 +45,13 @@ struct FrameRequest {
     bool accumulate = false;   ///< averages with earlier frames as long as nothing drawn changes
     bool antialiased = true;   ///< shifts the rays of averaged frames; false: all of them as in the first
     bool transparent = false;  ///< keeps the points' light apart from the background in averages
-    double most_pixels = 0;    ///< if over 0: the largest diameter of a point in the picture, pixels
-    bool moving = false;       ///< a frame of a motion: the engine may reuse data of earlier frames
-    /// For motion in real time: the time that may be spent on light that outlasts a frame, s
-    /// (gi::Frame::light_seconds).
-    double light_seconds = std::numeric_limits<double>::infinity();
+    /// If over 0: the largest diameter of a point in the picture, pixels. Gaps between points are filled.
+    double most_pixels = 0;
+    bool front_only = false;  ///< as gi::Look::front_only
+    bool moving = false;      ///< a frame of a motion: the engine may reuse data of earlier frames
+    /// For motion in real time: how much of the light that outlasts a frame is made
+    /// (gi::Frame::light_budget).
+    gi::StepBudget light_budget{};
     double exposure_seconds = 0;  ///< time in which automatic exposure follows by 63 %; 0: at once
     bool stand_in = false;        ///< lets the default engine draw in the place of one that takes long
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
@@ -68,6 +71,10 @@ struct FrameStats {
     MemoryUse memory;
     uint32_t accumulated = 1;  ///< frames in the picture
     bool given_up = false;     ///< FrameRequest::stop: there is no new picture
+    /// The finished share of what the engine computes in advance, 0..1; none if it computes nothing.
+    std::optional<double> prepared;
+    std::string preparing;     ///< the name of the step of it that is being taken; empty: none
+    std::string not_prepared;  ///< why it failed
     uint64_t nodes_lost = 0;   ///< unreadable nodes, which are left out with their descendants
     std::string lost_node;     ///< why the first of these could not be read
     std::vector<std::pair<std::string, double>> engine;
@@ -110,6 +117,15 @@ class Pipeline {
     /// tone map or the display of a comparison keeps the average. Errors (arguments): the comparison's engine
     /// is unknown.
     Result<void> set_scene(gi::Scene scene);
+
+    /// Sets a function that is called on another thread when the engine's precomputation has news, so that
+    /// another picture is worth making. Call before the first render().
+    void on_prepared(std::function<void()> published);
+    /// Computes in advance all that the engine asks for with the present settings and scene, as render() with
+    /// `wait` does, and keeps it. Returns the file; empty if there is no place for it. `progress` counts
+    /// thousandths. Errors: it fails; it cannot be kept. An engine
+    /// that computes nothing in advance is done at once.
+    Result<std::filesystem::path> prepare(Progress* progress = nullptr);
 
     const gi::EngineInfo& engine() const;
     const gi::EngineSettings& settings() const;

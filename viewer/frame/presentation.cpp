@@ -7,6 +7,7 @@
 #include "gi/post/backdrop.h"
 #include "gi/post/exposure.h"
 #include "gi/post/false_colour.h"
+#include "gi/post/fill_gaps.h"
 #include "gi/post/tone_map.h"
 
 namespace lucarne::viewer {
@@ -21,7 +22,10 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     LUCARNE_TRY(expose(engine, scene, gbuffer));
     LUCARNE_TRY(show(engine, scene, pixels, own_));
     if (other) LUCARNE_TRY(compare(*other, scene, gbuffer));
-    return gi::draw_backdrop(device_, gbuffer, radiance(), averaged_, scene.look.backdrop, own_.picture);
+    LUCARNE_TRY(
+        gi::draw_backdrop(device_, gbuffer, radiance(), averaged_, scene.look.backdrop, own_.picture));
+    if (averaging.gaps == 0) return {};
+    return gi::fill_gaps(device_, gbuffer, radiance(), averaged_, averaging.gaps, own_.picture);
 }
 
 Result<void> Presentation::expose(const gi::Engine& engine, const gi::Scene& scene,

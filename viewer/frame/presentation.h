@@ -31,6 +31,7 @@ class Presentation {
     struct Averaging {
         bool on = false;            ///< show the mean of this frame and the frames since restart()
         bool points_apart = false;  ///< average the points' light apart from the background
+        uint32_t gaps = 0;          ///< if over 0: gaps up to twice as many pixels wide are filled
     };
     /// Time in which automatic exposure follows the pictures by 63 %; 0: at once.
     void follow_exposure(double seconds) { exposure_seconds_ = seconds; }

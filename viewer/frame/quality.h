@@ -13,7 +13,7 @@ ImageSize scaled_size(ImageSize full, double scale);
 
 /// Keeps pictures fast while the camera or a light moves. They never cost more than the preset `interactive`
 /// asks for. First the picture gets smaller; if that is not enough, the cuts get as coarse as the cheapest
-/// preset's. Light is not reduced, because engines make it over several frames (FrameRequest::light_seconds).
+/// preset's. Light is not reduced, because engines make it over several frames (FrameRequest::light_budget).
 /// At rest there is no reduction.
 class MovingQuality {
  public:

@@ -152,6 +152,7 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
     growing.sample_points = opening.sample_points;
     growing.first_points = opening.first_points;
     growing.first_read = opening.first_read;
+    growing.read_points = opening.read_points;
     growing.sampling = opening.sampling;
     // A temporary folder is removed with the program, together with its contents.
     if (opening.resumable && !open.folder) growing.build.resume = octree::Resume::go_on;

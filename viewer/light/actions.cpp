@@ -41,14 +41,28 @@ bool is_on(const Lighting& model) {
     return has_light(model) && model.lights.selected < model.view.scene.lights.size() &&
            model.view.scene.lights[model.lights.selected].on;
 }
-bool can_undo(const Lighting& model) {
-    return !model.lights.undo.empty();
-}
 void toggle_handles(const Lighting& model) {
     model.lights.show_handles = !model.lights.show_handles;
 }
 bool shows_handles(const Lighting& model) {
     return model.lights.show_handles;
+}
+
+/// What the scan shows, seen from where the camera is: a house that was entered is one of rooms.
+Site site_about(const View& view) {
+    Site site = view.site;
+    if (site.inside && view.entered) site.kind = SiteKind::interior;
+    return site;
+}
+
+/// Replaces the light by a mood's. The sun stays at the hour that the user has chosen.
+void set_mood_here(View& view, Mood mood) {
+    std::optional<gi::SunMoment> chosen;
+    for (const gi::SceneLight& light : view.scene.lights)
+        if (light.sun) chosen = light.sun;
+    set_mood(view.scene, mood, site_about(view), view.rig.camera());
+    if (chosen && mood == Mood::daylight) set_daytime(view.scene, *chosen);
+    view.scene_changed();
 }
 
 }  // namespace
@@ -78,41 +92,29 @@ std::span<const Action<const Lighting>> light_actions() {
               light_as<Mood::raking_light>,
               has_site},
         Entry{{GLFW_KEY_5, GLFW_MOD_SHIFT}, "Light/Mood", "Museum", light_as<Mood::museum>, has_site},
+        Entry{{GLFW_KEY_6, GLFW_MOD_SHIFT}, "Light/Mood", "Clay", light_as<Mood::clay>, has_site},
         Entry{{GLFW_KEY_D, GLFW_MOD_ALT}, "Light", "Duplicate", duplicate_light, has_light},
         Entry{{GLFW_KEY_DELETE, GLFW_MOD_ALT}, "Light", "Delete", remove_light, has_light},
-        Entry{{GLFW_KEY_Z, GLFW_MOD_ALT}, "Light", "Undo", undo_lights, can_undo},
         Entry{{GLFW_KEY_H, GLFW_MOD_ALT}, "Light", "Handles", toggle_handles, nullptr, shows_handles},
     };
     return kActions;
 }
 
-/// What the scan shows, seen from where the camera is: a house that was entered is one of rooms.
-Site site_about(const View& view) {
-    Site site = view.site;
-    if (site.inside && view.entered) site.kind = SiteKind::interior;
-    return site;
-}
-
 void light_for_place(const Lighting& model) {
     if (!model.lights.mood) return;
-    const Site site = site_about(model.view);
     const bool colours = *model.lights.mood == Mood::scan_colours;
     const gi::Backdrop backdrop = model.view.scene.look.backdrop;
-    set_mood(model.view.scene, colours ? usual_mood(site) : *model.lights.mood, site,
-             model.view.rig.camera());
+    set_mood_here(model.view, colours ? usual_mood(site_about(model.view)) : *model.lights.mood);
     if (colours) model.view.scene.look.backdrop = backdrop;
-    model.view.scene_changed();
 }
 
 void take_mood(const Lighting& model, Mood mood) {
-    remember_lights(model);
-    set_mood(model.view.scene, mood, site_about(model.view), model.view.rig.camera());
+    set_mood_here(model.view, mood);
     const std::string_view unlit = engine_of(Mood::scan_colours);
     if (mood == Mood::scan_colours || model.view.method.engine == unlit)
         model.view.method.engine = engine_of(mood);
     model.lights.selected = 0;
     model.lights.mood = mood;
-    model.view.scene_changed();
 }
 
 void place_light_at_camera(const Lighting& model) {

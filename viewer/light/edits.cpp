@@ -12,7 +12,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr size_t kMostLights = 64, kMostUndone = 100;
+constexpr size_t kMostLights = 64;
 
 /// Returns the strength that makes a surface of albedo .5, turned 45 degrees from the light, look mid-grey.
 double fitting_strength(const gi::SceneLight& light, double ev, double metres_per_unit) {
@@ -36,32 +36,13 @@ double fitting_strength(const gi::SceneLight& light, double ev, double metres_pe
 
 }  // namespace
 
-void remember_lights(const Lighting& model) {
-    model.lights.mood.reset();
-    auto& undo = model.lights.undo;
-    if (!undo.empty() && undo.back() == model.view.scene.lights) return;
-    undo.push_back(model.view.scene.lights);
-    if (undo.size() > kMostUndone) undo.erase(undo.begin());
-}
-
-void undo_lights(const Lighting& model) {
-    auto& undo = model.lights.undo;
-    if (undo.empty()) return;
-    model.lights.mood.reset();
-    model.view.scene.lights = std::move(undo.back());
-    undo.pop_back();
-    model.lights.selected = std::min(model.lights.selected, model.view.scene.lights.size());
-    model.view.scene_changed();
-    model.view.message = "Undone";
-}
-
 void add_light(const Lighting& model, gi::LightKind kind) {
     static constexpr const char* kNames[] = {"spot", "point", "sun", "rectangle", "disc"};
     if (model.view.scene.lights.size() >= kMostLights) {
         model.view.message = fmt::format("a scene has at most {} lights", kMostLights);
         return;
     }
-    remember_lights(model);
+    model.lights.mood.reset();
     gi::SceneLight light;
     light.kind = kind;
     light.name = fmt::format("{} {}", kNames[static_cast<size_t>(kind)], model.view.scene.lights.size() + 1);
@@ -90,7 +71,7 @@ void add_light(const Lighting& model, gi::LightKind kind) {
 void duplicate_light(const Lighting& model) {
     const gi::SceneLight* light = model.selected_light();
     if (!light || model.view.scene.lights.size() >= kMostLights) return;
-    remember_lights(model);
+    model.lights.mood.reset();
     gi::SceneLight copy = *light;
     copy.name += " copy";
     const glm::dvec3 step = model.view.rig.right() * (model.view.scene_size / 50);
@@ -103,12 +84,12 @@ void duplicate_light(const Lighting& model) {
 
 void remove_light(const Lighting& model) {
     if (!model.selected_light()) return;
-    remember_lights(model);
+    model.lights.mood.reset();
     model.view.scene.lights.erase(model.view.scene.lights.begin() +
                                   static_cast<ptrdiff_t>(model.lights.selected));
     if (model.lights.selected > 0) --model.lights.selected;
     model.view.scene_changed();
-    model.view.message = "the light is gone; Alt+Z brings it back";
+    model.view.message = "the light is gone; Ctrl+Z brings it back";
 }
 
 void switch_selected_light(const Lighting& model) {

@@ -4,8 +4,7 @@
 
 namespace lucarne::viewer {
 
-// Edits of the scene's lights and of how light is shown, for the panel and the keys. Adding and removing
-// lights can be undone.
+// Edits of the scene's lights and of how light is shown, for the panel and the keys.
 
 /// Adds a light of a kind and selects it. The light shines on the point that the view turns about; its
 /// strength makes a surface there look mid-grey at the current exposure. Does nothing if the scene has as
@@ -13,9 +12,6 @@ namespace lucarne::viewer {
 void add_light(const Lighting& model, gi::LightKind kind);
 void duplicate_light(const Lighting& model);
 void remove_light(const Lighting& model);
-/// Remembers the lights for undo_lights(). Call before a change.
-void remember_lights(const Lighting& model);
-void undo_lights(const Lighting& model);
 /// Switches the selected light on or off.
 void switch_selected_light(const Lighting& model);
 /// Ties the selected light's direction to the sun's position at a moment. Without a moment, the light keeps

@@ -32,8 +32,7 @@ struct LightModel {
     bool lumens = false;   ///< show strengths in lm and lx
     double kelvin = 6500;  ///< the panel's colour temperature
     std::optional<LightHandle> held;
-    std::vector<std::vector<gi::SceneLight>> undo;  ///< earlier states of the lights, the newest last
-    std::string sky_image;                          ///< path of the sky picture, as typed
+    std::string sky_image;  ///< path of the sky picture, as typed
     CommandQueue<LoadSky> commands;
     std::string reading_sky, sky_problem;  ///< the path being read; why the last picture is not shown
 };

@@ -1,5 +1,8 @@
 // The moods as buttons over the picture, where a newcomer finds them.
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <cstdio>
 
 #include <imgui.h>
 
@@ -18,6 +21,34 @@ float width_of(std::span<const MoodInfo> all) {
     return width;
 }
 
+const gi::SceneLight* sun_of(const gi::Scene& scene) {
+    const auto sun = std::ranges::find(scene.lights, gi::LightKind::directional, &gi::SceneLight::kind);
+    return sun == scene.lights.end() ? nullptr : &*sun;
+}
+
+/// Lets the user choose the hour of the day. Until then the sun stands where it shows the scan best.
+void draw_hour(const Lighting& model) {
+    const gi::SceneLight* sun = sun_of(model.view.scene);
+    if (!sun) return;
+    gi::SunMoment moment = sun->sun.value_or(gi::SunMoment{});
+    gi::LocalTime time = gi::local_time(moment.time);
+    float hours = static_cast<float>(time.seconds) / 3600;
+    char clock[32] = "time of day";
+    if (sun->sun)
+        std::snprintf(clock, sizeof clock, "%02d:%02d", time.seconds / 3600, time.seconds / 60 % 60);
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    const bool changed = ImGui::SliderFloat("##hour", &hours, 0, 23.99f, clock, ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+        ImGui::SetTooltip(
+            "the sun of %04d-%02d-%02d at %.2f N, %.2f E; place and date are in the section Light", time.year,
+            time.month, time.day, moment.latitude, moment.longitude);
+    if (!changed) return;
+    time.seconds = static_cast<int>(std::lround(hours * 60)) * 60;
+    moment.time = gi::moment_of(time, moment.time.ahead);
+    set_daytime(model.view.scene, moment);
+    model.view.scene_changed();
+}
+
 }  // namespace
 
 void draw_mood_bar(const Lighting& model) {
@@ -31,10 +62,10 @@ void draw_mood_bar(const Lighting& model) {
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
                                    ImGuiWindowFlags_NoMove;
-    if (ImGui::Begin("##moods", nullptr, flags))
+    if (ImGui::Begin("##moods", nullptr, flags)) {
+        const bool lit = model.view.method.engine != engine_of(Mood::scan_colours);
         for (const MoodInfo& info : moods()) {
             if (info.mood != moods().front().mood) ImGui::SameLine();
-            const bool lit = model.view.method.engine != engine_of(Mood::scan_colours);
             const bool chosen = model.lights.mood == info.mood && lit == (info.mood != Mood::scan_colours);
             if (chosen)
                 ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
@@ -42,6 +73,8 @@ void draw_mood_bar(const Lighting& model) {
             if (chosen) ImGui::PopStyleColor();
             if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", info.help.data());
         }
+        if (lit && model.lights.mood == Mood::daylight) draw_hour(model);
+    }
     ImGui::End();
 }
 

@@ -35,7 +35,9 @@ void drag(const Lighting& model, const LightHandle& handle) {
         if (const auto point = model.view.picture->pick(
                 {io.MousePos.x / io.DisplaySize.x, io.MousePos.y / io.DisplaySize.y}))
             to = point;
-    if (to && move_light(light, handle.part, *to, sky)) model.view.scene_changed();
+    if (!to || !move_light(light, handle.part, *to, sky)) return;
+    model.lights.mood.reset();
+    model.view.scene_changed();
 }
 
 /// Draws one handle. Returns whether the mouse is on it.
@@ -63,9 +65,13 @@ bool draw_handle(const Lighting& model, const LightHandle& handle, const ImVec2&
             list.AddLine({at.x + c * from, at.y + s * from}, {at.x + c * to, at.y + s * to}, colour,
                          scaled(2));
         }
-    if ((hovered || handle.light == model.lights.selected) && handle.part != LightHandle::Part::target)
-        list.AddText({at.x + radius + scaled(6), at.y - ImGui::GetFontSize() / 2}, colour,
-                     light.name.c_str());
+    if ((hovered || handle.light == model.lights.selected) && handle.part != LightHandle::Part::target) {
+        const ImVec2 size = ImGui::CalcTextSize(light.name.c_str());
+        const ImVec2 from(at.x + radius + scaled(6), at.y - size.y / 2);
+        draw_plate(list, {from.x - scaled(3), from.y - scaled(2)},
+                   {from.x + size.x + scaled(3), from.y + size.y + scaled(2)}, scaled(3));
+        list.AddText(from, colour, light.name.c_str());
+    }
     return hovered;
 }
 
@@ -103,7 +109,6 @@ bool take_light_handles(const Lighting& model) {
         if (at && draw_handle(model, handle, *at)) under = handle;
     }
     if (under && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-        remember_lights(model);
         tools.held = under;
         model.lights.selected = under->light;
         return true;

@@ -163,10 +163,6 @@ void draw_buttons(const Lighting& model) {
     ImGui::SameLine();
     if (ImGui::Button("Delete")) remove_light(model);
     ImGui::SameLine();
-    ImGui::BeginDisabled(model.lights.undo.empty());
-    if (ImGui::Button("Undo")) undo_lights(model);
-    ImGui::EndDisabled();
-    ImGui::SameLine();
     ImGui::Checkbox("Handles", &model.lights.show_handles);
 }
 

@@ -37,12 +37,6 @@ bool has_any(const Measuring& model) {
 bool has_selected(const Measuring& model) {
     return model.measure.selected_one() != nullptr;
 }
-bool can_undo(const Measuring& model) {
-    return model.measure.list.can_undo();
-}
-bool can_redo(const Measuring& model) {
-    return model.measure.list.can_redo();
-}
 void finish(const Measuring& model) {
     if (!model.measure.finish()) model.measure.message = "click one more point";
 }
@@ -82,16 +76,6 @@ std::span<const Action<const Measuring>> measure_actions() {
               "Delete the selected",
               [](const Measuring& m) { m.measure.remove_selected(); },
               has_selected},
-        Entry{{GLFW_KEY_Z, GLFW_MOD_CONTROL},
-              "Measure",
-              "Undo",
-              [](const Measuring& m) { m.measure.undo(); },
-              can_undo},
-        Entry{{GLFW_KEY_Y, GLFW_MOD_CONTROL},
-              "Measure",
-              "Redo",
-              [](const Measuring& m) { m.measure.redo(); },
-              can_redo},
         Entry{{GLFW_KEY_C, GLFW_MOD_CONTROL}, "Measure", "Copy", copy, has_any},
         Entry{{GLFW_KEY_U, GLFW_MOD_CONTROL},
               "Measure",

@@ -7,12 +7,6 @@
 
 namespace lucarne::viewer {
 
-void MeasureList::become(std::vector<Measurement> next) {
-    before_.push_back(std::exchange(now_, std::make_shared<const std::vector<Measurement>>(std::move(next))));
-    if (before_.size() > kMostUndone) before_.erase(before_.begin());
-    after_.clear();
-}
-
 bool MeasureList::add(Measurement measurement) {
     if (all().size() >= kMost) return false;
     for (size_t number = 1; measurement.name.empty(); ++number) {
@@ -22,7 +16,7 @@ bool MeasureList::add(Measurement measurement) {
     }
     std::vector<Measurement> next = all();
     next.push_back(std::move(measurement));
-    become(std::move(next));
+    replace(std::move(next));
     return true;
 }
 
@@ -30,32 +24,30 @@ void MeasureList::remove(size_t index) {
     if (index >= all().size()) return;
     std::vector<Measurement> next = all();
     next.erase(next.begin() + static_cast<ptrdiff_t>(index));
-    become(std::move(next));
+    replace(std::move(next));
 }
 
 void MeasureList::rename(size_t index, std::string name) {
     if (index >= all().size() || name.empty() || all()[index].name == name) return;
     std::vector<Measurement> next = all();
     next[index].name = std::move(name);
-    become(std::move(next));
+    replace(std::move(next));
 }
 
 void MeasureList::set_thickness(size_t index, double thickness) {
     if (index >= all().size() || all()[index].thickness == thickness) return;
     std::vector<Measurement> next = all();
     next[index].thickness = thickness;
-    become(std::move(next));
+    replace(std::move(next));
 }
 
-void MeasureList::replace(std::vector<Measurement> next) {
-    become(std::move(next));
+void MeasureList::replace(std::vector<Measurement> all) {
+    now_ = std::make_shared<const std::vector<Measurement>>(std::move(all));
 }
 
 void MeasureList::restart(std::vector<Measurement> all) {
-    now_ = std::make_shared<const std::vector<Measurement>>(std::move(all));
+    replace(std::move(all));
     saved_ = now_;
-    before_.clear();
-    after_.clear();
 }
 
 void MeasureList::scale(double factor) {
@@ -65,22 +57,8 @@ void MeasureList::scale(double factor) {
         measurement.thickness *= factor;
     }
     const bool saved = now_ == saved_;
-    now_ = std::make_shared<const std::vector<Measurement>>(std::move(next));
+    replace(std::move(next));
     if (saved) saved_ = now_;
-    before_.clear();
-    after_.clear();
-}
-
-void MeasureList::undo() {
-    if (before_.empty()) return;
-    after_.push_back(std::exchange(now_, before_.back()));
-    before_.pop_back();
-}
-
-void MeasureList::redo() {
-    if (after_.empty()) return;
-    before_.push_back(std::exchange(now_, after_.back()));
-    after_.pop_back();
 }
 
 }  // namespace lucarne::viewer

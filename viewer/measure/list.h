@@ -1,18 +1,24 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "viewer/measure/measurement.h"
 
 namespace lucarne::viewer {
 
-/// The measurements of a session. The last hundred changes can be undone.
+/// The measurements of a session.
 class MeasureList {
  public:
-    static constexpr size_t kMost = 10000, kMostUndone = 100;
+    static constexpr size_t kMost = 10000;
+
+    using State = std::shared_ptr<const std::vector<Measurement>>;
 
     const std::vector<Measurement>& all() const { return *now_; }
+    /// The current measurements. become() restores them.
+    const State& state() const { return now_; }
+    void become(State state) { now_ = std::move(state); }
     /// Adds a measurement. If it has no name, names it, for example "Distance 2". Returns false if the list
     /// is full.
     bool add(Measurement measurement);
@@ -21,11 +27,10 @@ class MeasureList {
     void replace(std::vector<Measurement> all);
     void set_thickness(size_t index, double thickness);
 
-    /// Multiplies all positions by `factor` to change the unit. This and all changes before it cannot be
-    /// undone.
+    /// Multiplies all positions by `factor` to change the unit.
     void scale(double factor);
 
-    /// Begins again with these, marked as saved: there is no change to undo.
+    /// Replaces all measurements by these, marked as saved.
     void restart(std::vector<Measurement> all);
 
     /// Marks the current measurements as saved, or as loaded from a file.
@@ -34,18 +39,9 @@ class MeasureList {
     /// undone.
     bool unsaved() const { return now_ != saved_ && !(now_->empty() && saved_->empty()); }
 
-    bool can_undo() const { return !before_.empty(); }
-    bool can_redo() const { return !after_.empty(); }
-    void undo();
-    void redo();
-
  private:
-    using State = std::shared_ptr<const std::vector<Measurement>>;
-    void become(std::vector<Measurement> next);
-
     State now_ = std::make_shared<const std::vector<Measurement>>();
     State saved_ = now_;
-    std::vector<State> before_, after_;
 };
 
 }  // namespace lucarne::viewer

@@ -54,16 +54,6 @@ void MeasureModel::remove_selected() {
     selected.reset();
 }
 
-void MeasureModel::undo() {
-    list.undo();
-    if (!selected_one()) selected.reset();
-}
-
-void MeasureModel::redo() {
-    list.redo();
-    if (!selected_one()) selected.reset();
-}
-
 void MeasureModel::copy_selected() {
     const Measurement* one = selected_one();
     const std::span<const Measurement> what = one ? std::span(one, 1) : std::span(list.all());

@@ -46,19 +46,17 @@ struct MeasureModel {
     void drop_last();  ///< removes the last pending point
     void stop();       ///< deactivates the tool
     void remove_selected();
-    void undo();
-    void redo();
     void copy_selected();  ///< copies all if none is selected
 
     /// Whether there are unsaved measurements, or pending points that are enough for one.
     bool unsaved() const { return list.unsaved() || can_finish(); }
     /// Saves the measurements. Overwrites only `own_file`. Errors: those of save_measurements().
     Result<void> save(const std::filesystem::path& path);
-    /// Replaces all measurements by those of a file; this can be undone. Errors: those of
+    /// Replaces all measurements by those of a file. Errors: those of
     /// load_measurements(); on failure nothing changes.
     Result<void> load(const std::filesystem::path& path);
 
-    /// Shows measurements that were kept: no change to undo, and none to save.
+    /// Shows measurements that were kept: no change to save.
     void restore(std::vector<Measurement> kept, double its_metres_per_unit);
 
     /// Call when the unit of the whole source has changed because a scan was opened or closed.

@@ -103,10 +103,6 @@ void edit_buttons(MeasureModel& measure, const UnitChoice& units) {
     ImGui::SameLine();
     if (button("Copy", !measure.list.all().empty())) measure.copy_selected();
     ImGui::SameLine();
-    if (button("Undo", measure.list.can_undo())) measure.undo();
-    ImGui::SameLine();
-    if (button("Redo", measure.list.can_redo())) measure.redo();
-    ImGui::SameLine();
     ImGui::Checkbox("Labels", &measure.labels);
     if (ImGui::RadioButton("Metres", measure.metres)) measure.metres = true;
     ImGui::SameLine();

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace lucarne::viewer {
 namespace {
@@ -64,6 +65,12 @@ gi::SceneCamera inside_view(const Site& site, const PictureShape& shape) {
 gi::SceneCamera first_view(const Site& site, const PictureShape& shape) {
     const bool inside = site.kind == SiteKind::interior && site.inside;
     return inside ? inside_view(site, shape) : outside_view(site, shape);
+}
+
+bool looks_in_from_outside(const Site& site, const gi::SceneCamera& camera) {
+    if (site.kind != SiteKind::interior) return false;
+    return camera.orthographic_height > 0 || glm::any(glm::lessThan(camera.position, site.box[0])) ||
+           glm::any(glm::greaterThan(camera.position, site.box[1]));
 }
 
 }  // namespace lucarne::viewer

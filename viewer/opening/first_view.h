@@ -14,4 +14,8 @@ gi::SceneCamera inside_view(const Site& site, const PictureShape& shape);
 /// Returns the view that a scan opens with: of interiors from inside, of others from outside.
 gi::SceneCamera first_view(const Site& site, const PictureShape& shape);
 
+/// Returns whether a camera looks at rooms from outside. Points that face away should not be drawn then
+/// (FrameRequest::front_only): ceilings and near walls would hide the rooms.
+bool looks_in_from_outside(const Site& site, const gi::SceneCamera& camera);
+
 }  // namespace lucarne::viewer

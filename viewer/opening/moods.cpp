@@ -6,12 +6,15 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "gi/registry.h"
 #include "gi/scene/photometry.h"
+#include "gi/scene/scene_lights.h"
 #include "io/core/options.h"
+#include "viewer/opening/clear_day.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -23,11 +26,13 @@ constexpr std::array kMoods = {
     MoodInfo{Mood::evening, "evening", "Evening", "warm lamps in rooms, a low sun outside"},
     MoodInfo{Mood::raking_light, "raking-light", "Raking light", "grazing light, which shows relief"},
     MoodInfo{Mood::museum, "museum", "Museum", "spots from above, before a dark background"},
+    MoodInfo{Mood::clay, "clay", "Clay", "shape alone: all points in one light grey"},
 };
 
 // Kelvin.
 constexpr double kBulb = 3600, kGallery = 4300, kLowSun = 3400, kNoonSun = 5800;
 
+constexpr double kLampRadius = .25;  ///< m
 constexpr double kSunRadius = glm::radians(.265);
 
 gi::Backdrop gradient(const glm::dvec3& top, const glm::dvec3& bottom) {
@@ -108,8 +113,14 @@ glm::dvec3 white_for(double kelvin, const glm::dvec3& cast) {
     return white / gi::luminance(white);
 }
 
-/// The lamps of a room: lights of one kind at the free places, which share `lumens`.
-std::vector<gi::SceneLight> lamps_in(const Site& site, gi::LightKind kind, double kelvin, double lumens) {
+/// The light that a room of this size needs, lm: about 100 lx on the ground covered by the box.
+double lumens_for(const Site& site) {
+    const glm::dvec3 sides = (site.box[1] - site.box[0]) * site.metres_per_unit;
+    return std::clamp(100 * sides.x * sides.y, 500.0, 1e6);
+}
+
+/// The lamps of a room: lights of one kind at the free places, which share the light that the room needs.
+std::vector<gi::SceneLight> lamps_in(const Site& site, gi::LightKind kind, double kelvin) {
     std::vector<gi::SceneLight> lamps;
     const double metre = 1 / site.metres_per_unit;
     for (const glm::dvec3& place : site.inside->lamps) {
@@ -120,17 +131,12 @@ std::vector<gi::SceneLight> lamps_in(const Site& site, gi::LightKind kind, doubl
         lamp.target = place - glm::dvec3(0, 0, metre);
         lamp.angle = glm::radians(130.0);
         lamp.softness = .6;
+        lamp.radius = kLampRadius * metre;
         lamp.strength = white_of(kelvin);
-        gi::set_luminous_flux(lamp, lumens, site.metres_per_unit);
+        gi::set_luminous_flux(lamp, lumens_for(site) / static_cast<double>(site.inside->lamps.size()),
+                              site.metres_per_unit);
     }
     return lamps;
-}
-
-/// The light that a room of this size needs, lm: about 100 lx on the ground covered by the box.
-double lumens_for(const Site& site) {
-    const glm::dvec3 sides = (site.box[1] - site.box[0]) * site.metres_per_unit;
-    return std::clamp(100 * sides.x * sides.y, 500.0, 1e6) /
-           static_cast<double>(std::max<size_t>(site.inside->lamps.size(), 1));
 }
 
 struct Light {
@@ -151,37 +157,48 @@ Light daylight(const Site& site, const gi::SceneCamera& camera) {
         const glm::dvec3 ahead = site.inside->ahead;
         towards = normalize(glm::dvec3(-ahead.y, ahead.x, .7) - .4 * ahead);
     }
-    return {{sun_from(site, towards, white_of(kNoonSun) * 850.0)}, {62, 76, 98}, kSky};
+    const ClearDay day = clear_day(glm::degrees(std::asin(towards.z)));
+    return {{sun_from(site, towards, day.sun)}, day.sky, kSky};
 }
 
 Light evening(const Site& site, const gi::SceneCamera& camera) {
-    if (in_rooms(site))
-        return {lamps_in(site, gi::LightKind::point, kBulb, lumens_for(site)), {}, kDark, kBulb};
+    if (in_rooms(site)) return {lamps_in(site, gi::LightKind::disc, kBulb), {}, kDark, kBulb};
     const glm::dvec3 towards = site.kind == SiteKind::terrain ? north_west(9) : left_of_view(camera, 65, 9);
     return {{sun_from(site, towards, white_of(kLowSun) * 220.0)}, {14, 18, 30}, kDusk, kLowSun};
 }
 
 Light raking(const Site& site, const gi::SceneCamera& camera) {
     if (in_rooms(site)) {
-        auto lamps = lamps_in(site, gi::LightKind::point, kGallery, lumens_for(site));
-        const double height = .35 / site.metres_per_unit;
-        for (auto& lamp : lamps) lamp.target.z += site.inside->floor + height - lamp.position.z;
-        for (auto& lamp : lamps) lamp.position.z = site.inside->floor + height;
-        return {std::move(lamps), {}, kDark, kGallery};
+        gi::SceneLight lamp;
+        lamp.name = "lamp";
+        lamp.position = site.inside->left_wall.from;
+        lamp.target = site.inside->left_wall.to;
+        lamp.angle = glm::radians(110.0);
+        lamp.softness = 1;
+        lamp.strength = white_of(kGallery);
+        gi::set_luminous_flux(lamp, lumens_for(site), site.metres_per_unit);
+        return {{lamp}, {}, kDark, kGallery};
     }
     const glm::dvec3 towards = site.kind == SiteKind::terrain ? north_west(12) : left_of_view(camera, 80, 10);
     return {{sun_from(site, towards, white_of(kNoonSun) * 850.0)}, glm::dvec3(6), kDark};
 }
 
 Light museum(const Site& site, const gi::SceneCamera& camera) {
-    if (in_rooms(site))
-        return {lamps_in(site, gi::LightKind::spot, kGallery, lumens_for(site)), {}, kDark, kGallery};
+    if (in_rooms(site)) return {lamps_in(site, gi::LightKind::spot, kGallery), {}, kDark, kGallery};
     return {{spot_on(site, "key", left_of_view(camera, 45, 45), white_of(kGallery), 1),
              spot_on(site, "fill", left_of_view(camera, -60, 25), white_of(kNoonSun), .2),
              spot_on(site, "rim", left_of_view(camera, 170, 50), white_of(kNoonSun), .6)},
             glm::dvec3(.004),
             kDark,
             kGallery};
+}
+
+/// Soft light from everywhere with a key light from the upper left.
+Light studio(const Site& site, const gi::SceneCamera& camera) {
+    if (in_rooms(site)) return {lamps_in(site, gi::LightKind::disc, gi::kDaylight), {}, kSoftGrey};
+    return {{spot_on(site, "key", left_of_view(camera, 40, 50), white_of(gi::kDaylight), 1)},
+            glm::dvec3(.12),
+            kSoftGrey};
 }
 
 }  // namespace
@@ -213,6 +230,10 @@ std::string_view engine_of(Mood mood) {
 
 void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera) {
     Light light;
+    if (mood == Mood::clay)
+        scene.look.colour = gi::ColourBy::clay;
+    else if (scene.look.colour == gi::ColourBy::clay)
+        scene.look.colour = gi::ColourBy::colour;
     switch (mood) {
         case Mood::scan_colours:  // lights stay for the engines that use them
             scene.look.unlit.shading = gi::Shading::occlusion;
@@ -230,13 +251,32 @@ void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCame
         case Mood::museum:
             light = museum(site, camera);
             break;
+        case Mood::clay:
+            light = studio(site, camera);
+            break;
     }
     scene.lights = std::move(light.lights);
     scene.environment = light.sky == glm::dvec3(0.0) ? nullptr : sky_of(light.sky);
     scene.environment_on = true;
     scene.look.backdrop = light.backdrop;
     scene.exposure_ev.reset();
-    scene.white = white_for(light.kelvin, site.cast);
+    scene.white = white_for(light.kelvin, mood == Mood::clay ? glm::dvec3(1) : site.cast);
+}
+
+void set_daytime(gi::Scene& scene, const gi::SunMoment& moment) {
+    const auto sun = std::ranges::find(scene.lights, gi::LightKind::directional, &gi::SceneLight::kind);
+    if (sun == scene.lights.end()) return;
+    sun->sun = moment;
+    gi::follow_sun(*sun);
+    const double elevation = gi::solar_position(moment).elevation;
+    const ClearDay day = clear_day(elevation);
+    sun->strength = day.sun;
+    scene.environment = sky_of(day.sky);
+    const double night = std::clamp(-elevation / 12, 0.0, 1.0);
+    const auto between = [](const gi::Backdrop& a, const gi::Backdrop& b, double t) {
+        return gradient(glm::mix(a.top, b.top, t), glm::mix(a.bottom, b.bottom, t));
+    };
+    scene.look.backdrop = between(between(kSky, kDusk, day.dusk), kDark, night);
 }
 
 }  // namespace lucarne::viewer

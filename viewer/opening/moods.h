@@ -17,7 +17,8 @@ enum class Mood : uint8_t {
     daylight,      ///< sun and sky
     evening,       ///< warm lamps in rooms; a low sun outside
     raking_light,  ///< grazing light from the left, which shows relief
-    museum         ///< spots from above before a dark background
+    museum,        ///< spots from above before a dark background
+    clay           ///< all points of one light grey, in soft light
 };
 struct MoodInfo {
     Mood mood;
@@ -36,9 +37,13 @@ Mood usual_mood(const Site& site);
 /// Returns the engine that shows a mood: `unlit` for scan colours, the default engine for the others.
 std::string_view engine_of(Mood mood);
 
-/// Replaces the scene's lights, sky, backdrop and exposure. Light comes from the left of `camera`'s view of
-/// objects, and from the north-west for terrain. All strengths are physical: a mood looks the same whatever
-/// the site's size and unit.
+/// Replaces the scene's lights, sky, backdrop and exposure; the points' colours for clay, and from clay.
+/// Light comes from the left of `camera`'s view of objects, and from the north-west for terrain. All
+/// strengths are physical: a mood looks the same whatever the site's size and unit.
 void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera);
+
+/// Moves the first sun of a scene in `daylight` to where it stands at a place and time, and gives sun, sky
+/// and backdrop the light of that hour on a clear day. Does nothing without a sun.
+void set_daytime(gi::Scene& scene, const gi::SunMoment& moment);
 
 }  // namespace lucarne::viewer

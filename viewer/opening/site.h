@@ -21,6 +21,12 @@ enum class SiteKind : uint8_t {
 };
 std::string_view site_name(SiteKind kind);
 
+/// A free place beside a wall, and a place at the wall's far end: light from one to the other grazes the
+/// wall.
+struct AlongWall {
+    glm::dvec3 from{0.0}, to{0.0};
+};
+
 /// A place to stand in a room. World units, directions are unit vectors.
 struct StandingPlace {
     glm::dvec3 eye{0.0};
@@ -28,6 +34,7 @@ struct StandingPlace {
     double free_ahead = 0;            ///< distance to what stands there
     double floor = 0, ceiling = 0;    ///< z, at the eye
     std::vector<glm::dvec3> lamps;    ///< free places below the ceiling along the room, where lamps light it
+    AlongWall left_wall;
 };
 
 /// What is known about a scan before it is shown.

@@ -16,7 +16,8 @@ constexpr double kLeastHeight = 1.9;  ///< free height for a person to stand
 constexpr double kWideEnough = 2;     ///< distance to the nearest wall from which a place gets no better
 constexpr double kElbowRoom = 0.7;    ///< distance to what stands beside and behind the eye
 constexpr double kLampSpacing = 5;
-constexpr double kHighestLamp = 4;  ///< above the floor
+constexpr double kHighestLamp = 4;                  ///< above the floor
+constexpr double kLeastAway = .4, kMostAway = 1.5;  ///< of grazing light from its wall
 
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
 constexpr int kAzimuths = 24;
@@ -132,6 +133,33 @@ std::vector<glm::dvec3> places_of_lamps(const OccupancyGrid& grid, const Standin
     return lamps;
 }
 
+/// Returns the distance from the place to the wall in a horizontal direction: the third of nine rays at three
+/// heights, so that furniture does not stop all of them, and they do not all pass a window.
+double wall_distance(const OccupancyGrid& grid, const StandingPlace& place, const glm::dvec3& toward,
+                     double metre) {
+    const double heights[3] = {place.floor + .5 * metre, place.eye.z, place.ceiling - .5 * metre};
+    const double azimuth = std::atan2(toward.y, toward.x);
+    std::array<double, 9> distances{};
+    for (size_t i = 0; i < distances.size(); ++i) {
+        const double turn = .15 * (static_cast<double>(i % 3) - 1);
+        const glm::dvec3 at(place.eye.x, place.eye.y, heights[i / 3]);
+        distances[i] = grid.look(at, direction(azimuth + turn, 0)).distance * std::cos(turn);
+    }
+    std::ranges::nth_element(distances, distances.begin() + 3);
+    return std::min(distances[3], grid.look(place.eye, toward).distance);
+}
+
+/// Returns the line along the wall on the left. It begins beside the eye, where pictures do not show the
+/// brightest part of the wall, as far from it as a fifth of its length.
+AlongWall along_left_wall(const OccupancyGrid& grid, const StandingPlace& place, double metre) {
+    const glm::dvec3 left(-place.ahead.y, place.ahead.x, 0);
+    const double length = wall_distance(grid, place, place.ahead, metre);
+    const double free = wall_distance(grid, place, left, metre);
+    const double away = std::min(std::clamp(length / 5, kLeastAway * metre, kMostAway * metre), free);
+    const glm::dvec3 from = place.eye + left * (free - away);
+    return {from, from + place.ahead * length + left * (away / 2)};
+}
+
 }  // namespace
 
 Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) {
@@ -157,6 +185,7 @@ Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) 
     place.floor = best->floor;
     place.ceiling = best->ceiling;
     place.lamps = places_of_lamps(grid, place, metre);
+    place.left_wall = along_left_wall(grid, place, metre);
     found.best = place;
     return found;
 }

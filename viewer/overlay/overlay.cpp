@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "viewer/frame/views.h"
+#include "gi/scene/views.h"
 #include "viewer/inputs/units.h"
 #include "viewer/overlay/axis_marks.h"
 
@@ -107,6 +107,7 @@ void draw_range(Sheet& sheet, const gi::Look& look, const gi::ValueRange& range)
 void draw_legend(Sheet& sheet, const gi::Look& look, const gi::ShownValues& values) {
     switch (look.colour) {
         case gi::ColourBy::colour:
+        case gi::ColourBy::clay:
             return;
         case gi::ColourBy::normal:
             return draw_rows(sheet, legend_title(look),
@@ -150,6 +151,13 @@ void draw_scale(Sheet& sheet, const OverlayView& view) {
         2 * std::tan(view.camera.vertical_fov / 2) * view.distance / std::max(view.size.height, 1u);
     const auto bars = scale_bars(pixel, view.metres_per_unit, 0.25 * sheet.width());
     dvec2 at(sheet.left() + 8.5 * em, sheet.height() - (1.3 + 1.9 * static_cast<double>(bars.size())) * em);
+    if (!bars.empty()) {
+        const auto longer = [](const ScaleBar& a, const ScaleBar& b) { return a.pixels < b.pixels; };
+        const double widest = std::ranges::max_element(bars, longer)->pixels;
+        const double below = 1.9 * static_cast<double>(bars.size()) * em;
+        sheet.area(at - dvec2(0.6 * em, 0.3 * em), at + dvec2(widest + 0.6 * em, below - 0.1 * em), kPaper,
+                   0.6f);
+    }
     for (const ScaleBar& bar : bars) {
         const dvec2 line = at + dvec2(0, 1.3 * em), end = line + dvec2(bar.pixels, 0), up(0, -0.4 * em);
         sheet.line(line, end);
@@ -183,15 +191,15 @@ std::vector<ScaleBar> scale_bars(double pixel, double metres_per_unit, double mo
 }
 
 std::vector<Axis> axes_in(const gi::SceneCamera& camera) {
-    const octree::View view = octree_view(camera, {1, 1});
+    const octree::View view = gi::octree_view(camera, {1, 1});
     std::vector<Axis> axes;
     for (int i = 0; i < 3; ++i) axes.push_back({{view.right[i], -view.up[i]}, view.forward[i]});
     return axes;
 }
 
 std::string legend_title(const gi::Look& look) {
-    static constexpr std::array kTitles = {"Colour",        "Intensity", "Elevation", "Classification",
-                                           "Return number", "Scan",      "Normal"};
+    static constexpr std::array kTitles = {
+        "Colour", "Intensity", "Elevation", "Classification", "Return number", "Scan", "Normal", "", "Clay"};
     if (look.colour == gi::ColourBy::attribute) return look.attribute;
     return kTitles[static_cast<size_t>(look.colour)];
 }

@@ -16,10 +16,36 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int64_t kVersion = 1;
+constexpr size_t kMostScans = 100'000;
+
+/// Reads the paths of scans: each a text, or an array of texts for a group.
+Result<ScanGroups> parse_scans(const nlohmann::json& whole, const JsonObject& object) {
+    ScanGroups groups;
+    const auto scans = whole.find("scans");
+    if (scans == whole.end()) return groups;
+    if (!scans->is_array()) return object.wrong("is not an array", "scans");
+    size_t count = 0;
+    for (const nlohmann::json& entry : *scans) {
+        std::vector<std::string> group;
+        const auto take = [&](const nlohmann::json& path) {
+            if (path.is_string() && !path.get_ref<const std::string&>().empty())
+                group.push_back(path.get<std::string>());
+        };
+        if (entry.is_array())
+            for (const nlohmann::json& path : entry) take(path);
+        else
+            take(entry);
+        if (group.empty()) return object.wrong("has an entry that is no path", "scans");
+        if ((count += group.size()) > kMostScans)
+            return object.wrong(fmt::format("has more than {} paths", kMostScans), "scans");
+        groups.push_back(std::move(group));
+    }
+    return groups;
+}
 
 /// Reads everything but the version. `whole` is the document of `object`.
 Result<Project> parse(const nlohmann::json& whole, JsonObject& object, const std::string& name,
-                      const fs::path& folder, double metres_per_unit) {
+                      const fs::path& folder, std::optional<double> metres_per_unit) {
     Project project;
     const auto part = [&](const char* key) {
         return whole.contains(key) ? whole[key].dump() : std::string();
@@ -39,11 +65,25 @@ Result<Project> parse(const nlohmann::json& whole, JsonObject& object, const std
     if (!mood.empty()) {
         LUCARNE_ASSIGN(project.mood, find_mood(mood));
     }
-    if (const auto scans = whole.find("scans"); scans != whole.end() && scans->is_array())
-        for (const auto& scan : *scans)
-            if (scan.is_string()) project.scans.push_back(scan.get<std::string>());
+    LUCARNE_ASSIGN(project.scans, parse_scans(whole, object));
     if (project.scene.cameras.empty()) return object.wrong("has no camera", "scene");
     return project;
+}
+
+Result<int64_t> version_of(const nlohmann::json& whole, const std::string& name) {
+    LUCARNE_ASSIGN(JsonObject object, JsonObject::of(whole, name));
+    return object.integer("version", 1, 1'000'000);
+}
+
+nlohmann::ordered_json scans_json(const ScanGroups& scans) {
+    auto json = nlohmann::ordered_json::array();
+    for (const auto& group : scans) {
+        if (group.size() == 1)
+            json.push_back(group.front());
+        else
+            json.push_back(group);
+    }
+    return json;
 }
 
 }  // namespace
@@ -54,7 +94,7 @@ fs::path project_file(const fs::path& config, const std::string& scan) {
 
 std::string project_text(const Project& project, double metres_per_unit, const fs::path& folder) {
     using Json = nlohmann::ordered_json;
-    Json json = {{"version", kVersion}, {"scans", project.scans}};
+    Json json = {{"version", kVersion}, {"scans", scans_json(project.scans)}};
     json["scene"] = Json::parse(gi::write_scene(project.scene, folder));
     if (project.mood) json["mood"] = mood_name(*project.mood);
     if (!project.measurements.empty())
@@ -64,27 +104,74 @@ std::string project_text(const Project& project, double metres_per_unit, const f
     return json_text(json);
 }
 
+bool is_project(const fs::path& file) {
+    const auto whole = load_json(file);
+    return whole && whole->is_object() && whole->contains("version");  // no scene has that key
+}
+
+Result<Project> parse_project(std::string_view text, const std::string& name, const fs::path& folder,
+                              std::optional<double> metres_per_unit) {
+    LUCARNE_ASSIGN(const nlohmann::json whole, parse_json(text, name));
+    LUCARNE_ASSIGN(const int64_t version, version_of(whole, name));
+    if (version > kVersion)
+        return rejected(name, fmt::format("version {} is newer than this program", version));
+    LUCARNE_ASSIGN(JsonObject object, JsonObject::of(whole, name));
+    return parse(whole, object, name, folder, metres_per_unit);
+}
+
+Result<Project> read_project(const fs::path& file, std::optional<double> metres_per_unit) {
+    LUCARNE_ASSIGN(const std::string text, load_text(file));
+    return parse_project(text, file.string(), file.parent_path(), metres_per_unit);
+}
+
+FoundScans find_scans(const ScanGroups& scans, const fs::path& folder) {
+    FoundScans all;
+    for (const auto& group : scans) {
+        std::vector<std::string> found;
+        for (const std::string& scan : group) {
+            std::error_code error;
+            const fs::path path(scan), moved = folder / path.filename();
+            if (path.is_absolute() && fs::exists(path, error))
+                found.push_back(scan);
+            else if (path.has_filename() && fs::exists(moved, error))
+                found.push_back(moved.string());
+            else
+                all.missing.push_back(scan);
+        }
+        if (!found.empty()) all.found.push_back(std::move(found));
+    }
+    return all;
+}
+
+std::string missing_text(const fs::path& file, const std::vector<std::string>& missing) {
+    constexpr size_t kMostNamed = 3;
+    if (missing.empty()) return "";
+    std::string text;
+    for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)
+        text += (i == 0 ? "" : ", ") + missing[i];
+    if (missing.size() > kMostNamed) text += fmt::format(" and {} more", missing.size() - kMostNamed);
+    return Error{ErrorKind::failed, file.string(), "scans not found: " + text, "put them beside the project"}
+        .line();
+}
+
 LoadedProject load_project(const fs::path& file, double metres_per_unit) {
     LoadedProject loaded;
     std::error_code error;
     if (file.empty() || !fs::exists(file, error)) return loaded;
-    const auto read = [&]() -> Result<Project> {
-        LUCARNE_ASSIGN(const nlohmann::json whole, load_json(file));
-        LUCARNE_ASSIGN(JsonObject object, JsonObject::of(whole, file.string()));
-        LUCARNE_ASSIGN(const int64_t version, object.integer("version", 1, 1'000'000));
-        loaded.may_write = version <= kVersion;
-        if (!loaded.may_write)
-            return rejected(file.string(), fmt::format("version {} is newer than this program", version));
-        return parse(whole, object, file.string(), file.parent_path(), metres_per_unit);
-    };
-    auto project = read();
-    if (project)
+    auto project = read_project(file, metres_per_unit);
+    if (project) {
         loaded.project = std::move(*project);
-    else if (!loaded.may_write)
+        return loaded;
+    }
+    const auto whole = load_json(file);
+    const auto version = whole ? version_of(*whole, file.string()) : 0;
+    if (version && *version > kVersion) {
         loaded.problem = project.error().line() + ": your work on this scan is neither shown nor kept";
-    else
+        loaded.may_write = false;
+    } else {
         loaded.problem = put_aside(file, project.error());
-    loaded.may_write = loaded.may_write && (project || !fs::exists(file, error));
+        loaded.may_write = !fs::exists(file, error);
+    }
     return loaded;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "viewer/flythrough/path.h"
@@ -14,8 +15,13 @@ class PathEditor {
  public:
     static constexpr double kStep = 2;  ///< s between the last key frame and a new one after it
 
-    const CameraPath& path() const { return path_; }  ///< has no keys at first
-    bool empty() const { return path_.keys.empty(); }
+    using State = std::shared_ptr<const CameraPath>;
+
+    const CameraPath& path() const { return *now_; }  ///< has no keys at first
+    bool empty() const { return path().keys.empty(); }
+    /// The current path. become() restores it.
+    const State& state() const { return now_; }
+    void become(State state);
     std::optional<size_t> selected() const { return selected_; }
     void select(std::optional<size_t> key);
 
@@ -29,10 +35,8 @@ class PathEditor {
     /// Exchanges the camera with that of the key frame `by` places later. The times stay.
     Result<void> move(int by);
     Result<void> set_frames_per_second(double rate);
-    bool can_undo() const { return !before_.empty(); }
-    void undo();
 
-    /// Replaces the path by one that was kept: no change to undo, and none to save. Errors: it is no path.
+    /// Replaces the path by one that was kept: no change to save. Errors: it is no path.
     Result<void> restore(CameraPath path);
     /// Replaces the path by a file's. Errors: those of reading the file; on failure nothing changes.
     Result<void> load(const std::filesystem::path& file);
@@ -40,20 +44,15 @@ class PathEditor {
     /// is false.
     Result<void> save(const std::filesystem::path& file, bool overwrite);
     /// Whether there are key frames that differ from those saved or loaded last.
-    bool unsaved() const { return !empty() && revision_ != saved_; }
+    bool unsaved() const { return !empty() && now_ != saved_; }
 
  private:
-    struct Before {
-        CameraPath path;
-        uint64_t revision;
-    };
     Result<void> take(CameraPath changed);
     void put(CameraPath path);
 
-    CameraPath path_;
-    uint64_t revision_ = 0, newest_ = 0, saved_ = 0;  ///< of the path; the newest; in the file
+    State now_ = std::make_shared<const CameraPath>();
+    State saved_ = now_;
     std::optional<size_t> selected_;
-    std::vector<Before> before_;  ///< for undo
 };
 
 }  // namespace lucarne::viewer

@@ -23,9 +23,6 @@ bool has_keys(const Publishing& model) {
 bool has_selected(const Publishing& model) {
     return model.publish.editor.selected().has_value();
 }
-bool can_undo(const Publishing& model) {
-    return model.publish.editor.can_undo();
-}
 bool is_rendering(const Publishing& model) {
     return model.publish.rendering.running;
 }
@@ -75,11 +72,6 @@ std::span<const Action<const Publishing>> publish_actions() {
         Entry{{GLFW_KEY_RIGHT, kAlt}, kMenu, "Select the next", select_key<1>, has_keys},
         Entry{{GLFW_KEY_LEFT, kAlt | kShift}, kMenu, "Move the selected earlier", move_key<-1>, has_selected},
         Entry{{GLFW_KEY_RIGHT, kAlt | kShift}, kMenu, "Move the selected later", move_key<1>, has_selected},
-        Entry{{GLFW_KEY_Z, kAlt | kShift},
-              kMenu,
-              "Undo",
-              [](const Publishing& m) { m.publish.editor.undo(); },
-              can_undo},
         Entry{{GLFW_KEY_SPACE},
               kMenu,
               "Play",

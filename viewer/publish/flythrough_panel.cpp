@@ -50,8 +50,6 @@ void key_buttons(const Publishing& model) {
     if (button("Replace", one)) publish.take(publish.editor.replace(model.view.rig.camera()));
     ImGui::SameLine();
     if (button("Delete", one)) publish.take(publish.editor.remove());
-    ImGui::SameLine();
-    if (button("Undo", publish.editor.can_undo())) publish.editor.undo();
     if (button("Earlier", one)) publish.take(publish.editor.move(-1));
     ImGui::SameLine();
     if (button("Later", one)) publish.take(publish.editor.move(1));

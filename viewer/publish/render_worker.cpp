@@ -1,33 +1,15 @@
 #include "viewer/publish/render_worker.h"
 
-#include <atomic>
-#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "io/core/job_queue.h"
 #include "io/files/file.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/video.h"
+#include "viewer/opening/first_view.h"
 
 namespace lucarne::viewer {
-
-struct RenderWorker::State {
-    std::function<void()> changed;
-    std::atomic<bool> stop{false};
-    std::mutex mutex;
-    RenderState shown;
-    std::optional<Result<std::string>> outcome;
-    JobQueue jobs;  ///< the last member: it ends before what its jobs use
-
-    Result<void> frame_done();
-    void finish(Result<std::string> done);
-    Result<std::string> render(const RenderOrder& order, const WorkerDevice& device);
-    Result<std::string> draw(const RenderOrder& order, const WorkerDevice& device);
-    Result<std::string> still(Pipeline& pipeline, const RenderOrder& order, const StillOrder& what);
-    Result<std::string> flight(Pipeline& pipeline, const RenderOrder& order, const FlightOrder& what);
-};
 
 namespace {
 
@@ -59,23 +41,23 @@ RenderState first_state(const RenderOrder& order) {
 }  // namespace
 
 /// Counts a finished frame. Returns an error if the work has been cancelled.
-Result<void> RenderWorker::State::frame_done() {
-    {
-        const std::lock_guard lock(mutex);
+Result<void> RenderWorker::frame_done() {
+    work_.update([](RenderState& shown) {
         ++shown.done;
-    }
-    changed();
-    return stop ? failed(shown.file, kCancelled) : Result<void>();
+        return true;
+    });
+    return work_.cancelled() ? failed(work_.shown().file, kCancelled) : Result<void>();
 }
 
-Result<std::string> RenderWorker::State::still(Pipeline& pipeline, const RenderOrder& order,
-                                               const StillOrder& what) {
+Result<std::string> RenderWorker::still(Pipeline& pipeline, const RenderOrder& order,
+                                        const StillOrder& what) {
     FrameRequest request;
     request.camera = what.camera;
     request.size = order.size;
     request.wait = true;
     request.accumulate = what.frames > 1;
     request.transparent = what.finish.transparent;
+    request.front_only = looks_in_from_outside(order.site, what.camera);
     for (uint32_t frame = 0; frame < what.frames; ++frame) {
         LUCARNE_TRY(pipeline.render(request));
         LUCARNE_TRY(frame_done());
@@ -84,15 +66,16 @@ Result<std::string> RenderWorker::State::still(Pipeline& pipeline, const RenderO
     return fmt::format("saved {} ({}x{})", what.file.string(), order.size.width, order.size.height);
 }
 
-Result<std::string> RenderWorker::State::flight(Pipeline& pipeline, const RenderOrder& order,
-                                                const FlightOrder& what) {
+Result<std::string> RenderWorker::flight(Pipeline& pipeline, const RenderOrder& order,
+                                         const FlightOrder& what) {
     std::unique_ptr<VideoWriter> video;
     if (!what.video.empty()) {
-        LUCARNE_ASSIGN(video,
-                       VideoWriter::start(what.video, order.size, what.path.frames_per_second, false, stop));
+        LUCARNE_ASSIGN(video, VideoWriter::start(what.video, order.size, what.path.frames_per_second, false,
+                                                 work_.cancelled()));
     }
     FlightOptions how;
     how.size = order.size;
+    how.site = order.site;
     if (!what.frames_folder.empty()) how.frames_folder = what.frames_folder;
     how.take_frame = [&](const io::Image8& picture, size_t) -> Result<void> {
         if (video) LUCARNE_TRY(video->add(picture));
@@ -100,10 +83,10 @@ Result<std::string> RenderWorker::State::flight(Pipeline& pipeline, const Render
     };
     LUCARNE_ASSIGN(const Flight flown, fly(pipeline, what.path, how));
     if (video) LUCARNE_TRY(video->finish());
-    return fmt::format("saved {}: {} frames", shown.file, what.path.frames());
+    return fmt::format("saved {}: {} frames", work_.shown().file, what.path.frames());
 }
 
-Result<std::string> RenderWorker::State::draw(const RenderOrder& order, const WorkerDevice& device) {
+Result<std::string> RenderWorker::draw(const RenderOrder& order, const WorkerDevice& device) {
     LUCARNE_ASSIGN(const auto gl, device.make());
     LUCARNE_ASSIGN(const auto pipeline, Pipeline::open(*gl, order.source, order.caps));
     LUCARNE_TRY(pipeline->set_method(order.method));
@@ -112,59 +95,18 @@ Result<std::string> RenderWorker::State::draw(const RenderOrder& order, const Wo
     return flight(*pipeline, order, std::get<FlightOrder>(order.what));
 }
 
-Result<std::string> RenderWorker::State::render(const RenderOrder& order, const WorkerDevice& device) {
+Result<std::string> RenderWorker::render(const RenderOrder& order, const WorkerDevice& device) {
     LUCARNE_TRY(check(order));
-    auto drawn = guarded(shown.file, [&] { return draw(order, device); });
+    auto drawn = guarded(work_.shown().file, [&] { return draw(order, device); });
     device.release();
     return drawn;
 }
 
-void RenderWorker::State::finish(Result<std::string> done) {
-    {
-        const std::lock_guard lock(mutex);
-        shown.running = false;
-        outcome = std::move(done);
-    }
-    changed();
-}
-
-RenderWorker::RenderWorker(std::function<void()> changed) : state_(std::make_unique<State>()) {
-    state_->changed = std::move(changed);
-}
-
-RenderWorker::~RenderWorker() {
-    cancel();
-}
-
 bool RenderWorker::start(RenderOrder order, WorkerDevice device) {
-    {
-        const std::lock_guard lock(state_->mutex);
-        if (state_->shown.running) return false;
-        state_->shown = first_state(order);
-        state_->outcome.reset();
-    }
-    state_->stop = false;
-    state_->jobs.push(
-        "rendering",
-        [state = state_.get(), order = std::move(order), device = std::move(device)] {
-            return state->render(order, device);
-        },
-        [state = state_.get()](Result<std::string> done) { state->finish(std::move(done)); });
-    return true;
-}
-
-void RenderWorker::cancel() {
-    state_->stop = true;
-}
-
-RenderState RenderWorker::state() const {
-    const std::lock_guard lock(state_->mutex);
-    return state_->shown;
-}
-
-std::optional<Result<std::string>> RenderWorker::take_outcome() {
-    const std::lock_guard lock(state_->mutex);
-    return std::exchange(state_->outcome, std::nullopt);
+    RenderState first = first_state(order);
+    return work_.start(
+        "rendering", std::move(first),
+        [this, order = std::move(order), device = std::move(device)] { return render(order, device); });
 }
 
 }  // namespace lucarne::viewer

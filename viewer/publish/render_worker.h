@@ -5,11 +5,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "viewer/flythrough/path.h"
 #include "viewer/frame/picture_worker.h"
+#include "viewer/opening/site.h"
 #include "viewer/publish/finished_picture.h"
+#include "viewer/publish/single_order.h"
 
 namespace lucarne::viewer {
 
@@ -35,6 +38,7 @@ struct RenderOrder {
     Method method;
     PipelineOptions caps;  ///< in addition to the memory of the window's pipeline
     ImageSize size;
+    Site site;  ///< decides from where rooms are looked into
     std::variant<StillOrder, FlightOrder> what;
 };
 
@@ -49,23 +53,25 @@ struct RenderState {
 class RenderWorker {
  public:
     /// `changed` is called, by any thread, when state() or take_outcome() has something new.
-    explicit RenderWorker(std::function<void()> changed);
-    ~RenderWorker();  ///< cancels and waits for the current frame
-    RenderWorker(const RenderWorker&) = delete;
-    RenderWorker& operator=(const RenderWorker&) = delete;
+    explicit RenderWorker(std::function<void()> changed) : work_(std::move(changed)) {}
 
     /// Starts an order. Returns false and does nothing while another order is running. The device is released
     /// before the order ends.
     bool start(RenderOrder order, WorkerDevice device);
     /// Cancels after the current frame. Written frames stay; an unfinished video is removed.
-    void cancel();
-    RenderState state() const;
+    void cancel() { work_.cancel(); }
+    RenderState state() const { return work_.shown(); }
     /// Returns the last order's outcome once: what was written, or the error.
-    std::optional<Result<std::string>> take_outcome();
+    std::optional<Result<std::string>> take_outcome() { return work_.take_outcome(); }
 
  private:
-    struct State;
-    std::unique_ptr<State> state_;
+    Result<void> frame_done();
+    Result<std::string> render(const RenderOrder& order, const WorkerDevice& device);
+    Result<std::string> draw(const RenderOrder& order, const WorkerDevice& device);
+    Result<std::string> still(Pipeline& pipeline, const RenderOrder& order, const StillOrder& what);
+    Result<std::string> flight(Pipeline& pipeline, const RenderOrder& order, const FlightOrder& what);
+
+    SingleOrder<RenderState> work_;
 };
 
 }  // namespace lucarne::viewer

@@ -1,5 +1,8 @@
 #include "viewer/publish/seen_points.h"
 
+#include "io/formats/copc/copc.h"
+#include "io/formats/scan.h"
+
 namespace lucarne::viewer {
 
 void export_what_is_seen(const gi::Look& look, const io::Schema& schema, octree::ExportOptions& options) {
@@ -18,6 +21,14 @@ void export_what_is_seen(const gi::Look& look, const io::Schema& schema, octree:
         }
         return gi::keeps(clip, point);
     };
+}
+
+Result<uint64_t> write_points(const octree::Exporter& exporter, const std::filesystem::path& file,
+                              bool overwrite, const std::function<void(uint64_t)>& progress) {
+    if (io::copc::is_name(file)) return exporter.write_copc(file, overwrite, progress);
+    LUCARNE_ASSIGN(const auto writer, io::create_scan(file, exporter.schema(), exporter.info(),
+                                                      exporter.write_options(overwrite)));
+    return exporter.write(*writer, progress);
 }
 
 }  // namespace lucarne::viewer

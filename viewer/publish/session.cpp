@@ -14,7 +14,7 @@ ImageSize size_of(int width, int height) {
 }
 
 RenderOrder order_of(const View& view, std::shared_ptr<const octree::NodeSource> source) {
-    return {std::move(source), view.scene, view.method, view.caps, {}, {}};
+    return {std::move(source), view.scene, view.method, view.caps, {}, view.site, {}};
 }
 
 RenderOrder picture_order(const Publishing& model, std::shared_ptr<const octree::NodeSource> source) {

@@ -22,7 +22,9 @@ void next_engine(const Rendering& model) {
     const auto engines = gi::engines();
     const auto now = std::ranges::find(engines, model.view.method.engine,
                                        [](const auto& entry) { return entry.info.name; });
-    const auto next = now == engines.end() || now + 1 == engines.end() ? engines.begin() : now + 1;
+    auto next = now == engines.end() || now + 1 == engines.end() ? engines.begin() : now + 1;
+    while (next != now && !gi::can_run(next->info))
+        next = next + 1 == engines.end() ? engines.begin() : next + 1;
     model.view.method.engine = next->info.name;
     model.view.message = fmt::format("{}: {}", next->info.label, next->info.description);
 }

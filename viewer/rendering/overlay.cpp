@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kGrip = 6;  // half the width that the mouse grabs, to be scaled()
 constexpr ImU32 kShare = IM_COL32(255, 226, 120, 255), kRing = IM_COL32(130, 130, 130, 255),
-                kGrasped = IM_COL32(255, 140, 40, 255), kPaper = IM_COL32(10, 10, 10, 150);
+                kGrasped = IM_COL32(255, 140, 40, 255);
 
 }  // namespace
 
@@ -36,8 +36,7 @@ bool take_comparison_border(const Rendering& model) {
     const ImVec2 size = ImGui::CalcTextSize(left.c_str());
     const float right_width = ImGui::CalcTextSize(right.c_str()).x;
     const float gap = scaled(8), edge = scaled(14), above = scaled(3);
-    list.AddRectFilled({x - size.x - edge, y - above}, {x + right_width + edge, y + size.y + above}, kPaper,
-                       scaled(4));
+    draw_plate(list, {x - size.x - edge, y - above}, {x + right_width + edge, y + size.y + above}, scaled(4));
     list.AddText({x - size.x - gap, y}, IM_COL32_WHITE, left.c_str());
     list.AddText({x + gap, y}, IM_COL32_WHITE, right.c_str());
     list.AddLine({x, y - above}, {x, y + size.y + above}, IM_COL32_WHITE, scaled(2));
@@ -60,13 +59,17 @@ void draw_convergence(const View& view) {
     const ImVec2 centre(size.x - 7 * font, size.y - 1.2f * font);  // the line of messages is in the middle
     constexpr float kTop = -std::numbers::pi_v<float> / 2;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    list.AddCircleFilled(centre, radius + scaled(4), kPaper);
+    const std::string text = view.picture->moving
+                                 ? ""
+                                 : fmt::format("{} of {}", view.picture->stats.accumulated, kMostAccumulated);
+    const float across = radius + scaled(4),
+                width = text.empty() ? 0 : ImGui::CalcTextSize(text.c_str()).x + scaled(9);
+    draw_plate(list, {centre.x - across, centre.y - across}, {centre.x + across + width, centre.y + across},
+               across);
     list.AddCircle(centre, radius, kRing, 32, scaled(3));
     list.PathArcTo(centre, radius, kTop, kTop + share * 2 * std::numbers::pi_v<float>, 32);
     list.PathStroke(kShare, 0, scaled(3));
-    if (!view.picture->moving)
-        list.AddText({centre.x + radius + scaled(7), centre.y - font / 2}, IM_COL32_WHITE,
-                     fmt::format("{} of {}", view.picture->stats.accumulated, kMostAccumulated).c_str());
+    list.AddText({centre.x + radius + scaled(7), centre.y - font / 2}, IM_COL32_WHITE, text.c_str());
 }
 
 }  // namespace lucarne::viewer

@@ -14,15 +14,26 @@
 namespace lucarne::viewer {
 namespace {
 
+/// Draws an engine's entry of a list: greyed out with the reason if it cannot run here. Returns whether it
+/// was clicked.
+bool engine_entry(const gi::EngineInfo& engine, bool chosen) {
+    const auto runs = gi::can_run(engine);
+    if (!runs) ImGui::BeginDisabled();
+    const bool clicked = ImGui::Selectable(std::string(engine.label).c_str(), chosen);
+    if (!runs) ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        const std::string text =
+            runs ? fmt::format("{}: {}", engine.name, engine.description) : runs.error().line();
+        ImGui::SetTooltip("%s", text.c_str());
+    }
+    return clicked;
+}
+
 void engine_choice(const Rendering& model) {
     if (!ImGui::BeginCombo("Engine", gi::label_of(model.view.method.engine).c_str())) return;
-    for (const auto& entry : gi::engines()) {
-        const std::string name(entry.info.name), label(entry.info.label),
-            description(fmt::format("{}: {}", name, entry.info.description));
-        if (ImGui::Selectable(label.c_str(), name == model.view.method.engine))
-            model.view.method.engine = name;
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", description.c_str());
-    }
+    for (const auto& entry : gi::engines())
+        if (engine_entry(entry.info, entry.info.name == model.view.method.engine))
+            model.view.method.engine = entry.info.name;
     ImGui::EndCombo();
 }
 
@@ -223,11 +234,9 @@ void comparison(const Rendering& model) {
     auto& comparison = model.view.scene.comparison;
     if (ImGui::BeginCombo("With", comparison ? gi::label_of(comparison->engine).c_str() : "Nothing")) {
         if (ImGui::Selectable("Nothing", !comparison)) compare_with(model.view, "");
-        for (const auto& entry : gi::engines()) {
-            const std::string name(entry.info.name), label(entry.info.label);
-            if (ImGui::Selectable(label.c_str(), comparison && comparison->engine == name))
-                compare_with(model.view, name);
-        }
+        for (const auto& entry : gi::engines())
+            if (engine_entry(entry.info, comparison && comparison->engine == entry.info.name))
+                compare_with(model.view, std::string(entry.info.name));
         ImGui::EndCombo();
     }
     tell_cost("both engines light every picture: the times add up");

@@ -1,6 +1,7 @@
 #include "viewer/scans/file_browser.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <system_error>
 #include <tuple>
 
@@ -51,7 +52,21 @@ void FileBrowser::go(const fs::path& folder) {
     folder_ = unknown ? folder : whole.lexically_normal();
     if (!folder_.has_filename() && folder_.has_relative_path()) folder_ = folder_.parent_path();
     chosen_.clear();
+    problem_.clear();
     list();
+}
+
+std::optional<std::string> FileBrowser::enter(const std::string& typed) {
+    problem_.clear();
+    std::string text = typed;
+    const char* home = std::getenv("HOME");
+    if (home && (text == "~" || text.starts_with("~/"))) text = home + text.substr(1);
+    const fs::path path = folder_ / text;  // an absolute path stays as it is
+    std::error_code error;
+    if (fs::is_directory(path, error)) return go(path), std::nullopt;
+    if (fs::is_regular_file(path, error)) return path.string();
+    problem_ = path.string() + ": " + (error ? error.message() : "neither a file nor a folder");
+    return std::nullopt;
 }
 
 void FileBrowser::show_all(bool all) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -37,6 +38,10 @@ class FileBrowser {
     void close() { open_ = false; }
     bool is_open() const { return open_; }
     void go(const std::filesystem::path& folder);
+    /// Goes to a folder that was typed, relative to folder() or with ~ for the home folder. Returns the path
+    /// of a file that was typed. Sets problem() if there is neither.
+    std::optional<std::string> enter(const std::string& typed);
+    const std::string& problem() const { return problem_; }
     void show_all(bool all);
     bool shows_all() const { return all_; }
     void toggle(const std::string& name);  ///< chooses a file, or removes it from the choice
@@ -56,6 +61,7 @@ class FileBrowser {
     void list();
 
     bool open_ = false, all_ = false;
+    std::string problem_;
     std::filesystem::path folder_;
     std::set<std::string> chosen_;
     std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();

@@ -1,4 +1,7 @@
+#include <cfloat>
+
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include "io/core/options.h"
 #include "viewer/scans/file_browser.h"
@@ -33,6 +36,18 @@ void entries(FileBrowser& browser, ScanCommands& commands) {
         }
 }
 
+/// Draws the field for a path. Returns true if a file was typed, which is opened.
+bool type_path(FileBrowser& browser, ScanCommands& commands) {
+    std::string typed = browser.folder().string();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (!ImGui::InputText("##path", &typed, ImGuiInputTextFlags_EnterReturnsTrue)) return false;
+    ImGui::SetKeyboardFocusHere(-1);  // to go on typing
+    const auto file = browser.enter(typed);
+    if (file) commands.push(OpenFiles{{*file}});
+    return file.has_value();
+}
+
 }  // namespace
 
 void draw_file_browser(FileBrowser& browser, ScanCommands& commands) {
@@ -42,11 +57,13 @@ void draw_file_browser(FileBrowser& browser, ScanCommands& commands) {
     ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSize(ImVec2(std::min(size.x - 16, font * 44), std::min(size.y - 60, font * 32)),
                              ImGuiCond_Appearing);
+    ImGui::SetNextWindowBgAlpha(1);
     bool open = true;
     if (ImGui::Begin("Open scans", &open)) {
         if (ImGui::Button("Up")) browser.go(browser.folder().parent_path());
         ImGui::SameLine();
-        ImGui::TextUnformatted(browser.folder().c_str());
+        if (type_path(browser, commands)) open = false;
+        if (!browser.problem().empty()) ImGui::TextWrapped("%s", browser.problem().c_str());
         if (ImGui::BeginChild("entries", ImVec2(0, -2 * ImGui::GetFrameHeight()), true))
             entries(browser, commands);
         ImGui::EndChild();

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "viewer/ui/command_queue.h"
 
@@ -13,12 +16,17 @@ struct ChooseFiles {};
 struct OpenFiles {
     std::vector<std::string> paths;
 };
-using ScanCommands = CommandQueue<ChooseFiles, OpenFiles>;
+/// Show all of one scan.
+struct LookAtScan {
+    std::array<glm::dvec3, 2> box;  ///< world units
+};
+using ScanCommands = CommandQueue<ChooseFiles, OpenFiles, LookAtScan>;
 
 class FileBrowser;
 class ScanSet;
 
-void draw_scans_panel(ScanSet& scans);  ///< open scans, progress of loads and conversions
+/// Draws the open scans with the progress of loads and conversions. A double-click on a name shows that scan.
+void draw_scans_panel(ScanSet& scans, ScanCommands& commands);
 void draw_file_browser(FileBrowser& browser, ScanCommands& commands);
 
 }  // namespace lucarne::viewer

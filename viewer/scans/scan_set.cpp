@@ -18,6 +18,7 @@ using Source = std::shared_ptr<const octree::NodeSource>;
 constexpr uint64_t kSamplePoints = 400'000;      ///< for all scans that are opened at once
 constexpr uint64_t kFirstPoints = 60'000;        ///< of these, for the first picture
 constexpr uint64_t kFirstRead = 500'000;         ///< points that are read for it where files cannot seek
+constexpr uint64_t kReadPoints = 4'000'000;      ///< shown of the scan that is being converted
 constexpr uint64_t kLeastSamplePoints = 20'000;  ///< for one scan
 /// Each scan keeps one or two files open, and a process may have 1024.
 constexpr size_t kMostScans = 400;
@@ -118,6 +119,7 @@ Result<Opened> open_paths(const InputOptions& how, bool together, Watch& watch, 
     opening.sample_points = sample_points;
     opening.first_points = sample_points * kFirstPoints / kSamplePoints;
     opening.first_read = sample_points * kFirstRead / kSamplePoints;
+    opening.read_points = kReadPoints;
     opening.sampling = [&watch](uint64_t done, uint64_t total) {
         watch.share = total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;
         return !watch.cancelled;
@@ -264,6 +266,7 @@ void ScanSet::describe(const Item& item, ScanRow& row) const {
     const octree::SourceHeader& header = item.source->header();
     row.points = header.points;
     row.memory = item.source->directory_bytes();
+    if (header.points) row.box = {header.min, header.max};
     row.file_bytes = 0;
     row.of_path.clear();
     uint64_t declared = 0;

@@ -45,6 +45,7 @@ struct ScanRow {
     std::string stage;              ///< stage of the current work, for example "normals"
     double share = 0;               ///< finished share of the stage, 0 to 1
     std::optional<Error> error;     ///< why it failed or was not finished
+    std::optional<std::array<glm::dvec3, 2>> box;  ///< of what is known of it, world units
 
     std::string name() const;  ///< the folder or first file, and the number of files
     bool busy() const {

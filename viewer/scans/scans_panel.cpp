@@ -52,20 +52,22 @@ void files(const ScanRow& row) {
     }
 }
 
-/// Returns the number of points and the memory use, as far as they are known.
+/// Returns the number of points and the size on disk, as far as they are known.
 std::string figures(const ScanRow& row) {
     std::string text = row.points ? points_text(row.points) + " points" : "";
-    if (row.memory) text += (text.empty() ? "" : ", ") + bytes_text(row.memory) + " in memory";
+    if (row.file_bytes) text += (text.empty() ? "" : ", ") + bytes_text(row.file_bytes) + " on disk";
     return text;
 }
 
-void draw_row(ScanSet& scans, const ScanRow& row) {
+void draw_row(ScanSet& scans, const ScanRow& row, ScanCommands& commands) {
     const float font = ImGui::GetFontSize(), button = ImGui::GetContentRegionMax().x - 1.5f * font;
     ImGui::PushID(static_cast<int>(row.id));
-    bool visible = row.visible;
-    if (ImGui::Checkbox("##visible", &visible)) scans.set_visible(row.id, visible);
-    tip("drawn or not");
-    ImGui::SameLine();
+    if (row.state != ScanState::failed) {
+        bool visible = row.visible;
+        if (ImGui::Checkbox("##visible", &visible)) scans.set_visible(row.id, visible);
+        tip("drawn or not");
+        ImGui::SameLine();
+    }
     const bool tree = row.paths.size() > 1;
     const ImGuiTreeNodeFlags leaf = ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
     const ImVec2 corner = ImGui::GetCursorScreenPos();  // long names are cut off at the button
@@ -73,8 +75,10 @@ void draw_row(ScanSet& scans, const ScanRow& row) {
     ImGui::PushClipRect(corner, ImVec2(end, corner.y + ImGui::GetFrameHeight()), true);
     const bool open = ImGui::TreeNodeEx("##name", tree ? 0 : leaf, "%s", row.name().c_str());
     ImGui::PopClipRect();
-    tip(fmt::format("{}\n{} on disk; its directory takes {} of memory", row.paths.front(),
-                    bytes_text(row.file_bytes), bytes_text(row.memory)));
+    const bool twice = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    if (twice && row.box) commands.push(LookAtScan{*row.box});
+    tip(fmt::format("{}\n{} on disk; its directory takes {} of memory\ndouble-click: show all of it",
+                    row.paths.front(), bytes_text(row.file_bytes), bytes_text(row.memory)));
     ImGui::SameLine(button);
     const bool close = ImGui::SmallButton("x");
     tip("close it");
@@ -90,9 +94,9 @@ void draw_row(ScanSet& scans, const ScanRow& row) {
 
 }  // namespace
 
-void draw_scans_panel(ScanSet& scans) {
+void draw_scans_panel(ScanSet& scans, ScanCommands& commands) {
     const std::vector<ScanRow> rows = scans.rows();  // a copy: a row may be removed while the rows are drawn
-    for (const ScanRow& row : rows) draw_row(scans, row);
+    for (const ScanRow& row : rows) draw_row(scans, row, commands);
 }
 
 }  // namespace lucarne::viewer

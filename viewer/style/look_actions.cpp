@@ -17,8 +17,10 @@ using Entry = Action<const Styling>;
 /// Selects the next colouring. Skips attributes, which need a name and are chosen in the panel.
 void next_colour(const Styling& model) {
     gi::Look& look = model.view.scene.look;
-    const auto next = (static_cast<size_t>(look.colour) + 1) % static_cast<size_t>(gi::ColourBy::attribute);
-    look.colour = static_cast<gi::ColourBy>(next);
+    do {
+        const size_t next = (static_cast<size_t>(look.colour) + 1) % gi::colour_names().size();
+        look.colour = static_cast<gi::ColourBy>(next);
+    } while (look.colour == gi::ColourBy::attribute);
     look.range.reset();
     model.view.scene_changed();
     model.view.message = "colour: " + legend_title(look);

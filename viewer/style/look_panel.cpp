@@ -101,6 +101,7 @@ bool edit_points(gi::Look& look) {
         look.single_discs = !blended;
         changed = true;
     }
+    changed |= ImGui::Checkbox("Front sides only", &look.front_only);
     bool filled = !look.open_holes;
     if (ImGui::Checkbox("Filled holes", &filled)) {
         look.open_holes = !filled;

@@ -18,6 +18,7 @@ struct Action {
     void (*run)(Of& of);
     bool (*enabled)(const Of& of) = nullptr;  ///< null: always enabled
     bool (*checked)(const Of& of) = nullptr;  ///< null: the action is not a switch
+    KeyChord other{};                         ///< a second key, if any
 };
 
 /// An action together with what it acts on. Keys, menus and the help are all built from these, so that they
@@ -28,6 +29,7 @@ struct BoundAction {
     const char* name;
     std::function<void()> run;
     std::function<bool()> enabled, checked;
+    KeyChord other{};
 };
 
 /// Appends actions to `all`, bound to `of`: a copy of a feature's references, or a std::reference_wrapper.
@@ -37,6 +39,7 @@ void bind(std::span<const Action<Of>> actions, Bound of, std::vector<BoundAction
         BoundAction& bound = all.emplace_back(action.chord, action.menu, action.name);
         bound.run = [run = action.run, of] { run(of); };
         bound.enabled = [enabled = action.enabled, of] { return !enabled || enabled(of); };
+        bound.other = action.other;
         bound.checked = [checked = action.checked, of] { return checked && checked(of); };
     }
 }

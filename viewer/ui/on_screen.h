@@ -54,4 +54,9 @@ inline float scaled(float dots) {
     return dots * ImGui::GetFontSize() / kTextPixels;
 }
 
+/// Draws the dark plate on which texts over the picture are legible.
+inline void draw_plate(ImDrawList& list, const ImVec2& from, const ImVec2& to, float rounding) {
+    list.AddRectFilled(from, to, IM_COL32(10, 10, 10, 150), rounding);
+}
+
 }  // namespace lucarne::viewer

@@ -18,6 +18,7 @@ std::string Closing::reason_to_ask() {
     for (const Unsaved& one : work_to_lose(model_)) all += (all.empty() ? "not saved: " : ", ") + one.what;
     const auto add = [&](std::string_view reason) { all += (all.empty() ? "" : "; ") + std::string(reason); };
     if (model_.publish.rendering.running) add("a picture or flight is being rendered");
+    if (model_.exporting.running) add("points are being exported");
     if (model_.scans->converting()) add("a scan is being converted");
     return all;
 }

@@ -5,7 +5,9 @@
 #include <system_error>
 
 #include "io/core/log.h"
+#include "viewer/project/project.h"
 #include "viewer/scans/scan_set.h"
+#include "viewer/ui/on_screen.h"
 
 namespace lucarne::viewer {
 
@@ -31,6 +33,10 @@ void FileOpener::open_scenes(std::vector<std::string>& files) {
     };
     for (const std::string& file : files) {
         if (!is_scene(file)) continue;
+        if (is_project(file)) {
+            model_.commands.push(OpenProject{file});
+            continue;
+        }
         const auto done = model_.scans->source() ? model_.scene_file.open(model_.view, file)
                                                  : failed(file, "is a scene", "open a scan first");
         if (done) model_.lights.mood.reset();
@@ -38,6 +44,12 @@ void FileOpener::open_scenes(std::vector<std::string>& files) {
         log::info("{}", model_.view.message);
     }
     std::erase_if(files, is_scene);
+}
+
+void FileOpener::look_at(const std::array<glm::dvec3, 2>& box) {
+    CameraRig rig = model_.view.rig;
+    rig.fit(box, picture_shape(model_.view.side_bar));
+    model_.view.glide_to(rig.camera());
 }
 
 void FileOpener::take_files() {
@@ -48,6 +60,7 @@ void FileOpener::take_files() {
     const Overloaded run{
         [&](const ChooseFiles&) { choose_files(); },
         [&](const OpenFiles& open) { add(open.paths); },
+        [&](const LookAtScan& scan) { look_at(scan.box); },
     };
     for (const auto& command : model_.scan_commands.take()) std::visit(run, command);
     if (auto chosen = dialog_.poll()) add(std::move(*chosen));

@@ -16,13 +16,16 @@ class FileOpener {
     FileOpener(Window& window, ViewModel& model, KeptSettings& settings)
         : window_(window), model_(model), settings_(settings) {}
 
-    /// Opens scans and scenes (.json) that were dropped on the window or chosen in a dialog.
+    /// Opens scans, projects and scenes (.json) that were dropped on the window or chosen in a dialog.
     void take_files();
+    /// Whether a dialog in the window asks for files, so that keys are for it.
+    bool asks() const { return browser_.is_open(); }
     void draw() { draw_file_browser(browser_, model_.scan_commands); }
 
  private:
     void choose_files();
     void open_scenes(std::vector<std::string>& files);
+    void look_at(const std::array<glm::dvec3, 2>& box);
     std::filesystem::path folder() const;
 
     Window& window_;

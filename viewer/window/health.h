@@ -43,6 +43,7 @@ class RecoveryTries {
 struct Health {
     std::string device;           ///< the graphics device is lost for good; empty: it works
     std::string shaders;          ///< why the last good program is used instead of a shader file
+    std::string picture;          ///< why there is no new picture
     std::string nodes;            ///< nodes that are missing in the picture because they cannot be read
     FrameTimes frames;            ///< of the window itself: how long each kept it from responding
     FrameTimes pictures;          ///< between two pictures while something moves

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "io/input/controller.h"
@@ -11,10 +12,12 @@
 #include "viewer/scans/scan_commands.h"
 #include "viewer/style/styling.h"
 #include "viewer/ui/command_queue.h"
+#include "viewer/ui/file_question.h"
 #include "viewer/ui/scene_file.h"
 #include "viewer/ui/view.h"
 #include "viewer/window/health.h"
 #include "viewer/window/settings/settings.h"
+#include "viewer/window/undo_history.h"
 
 namespace lucarne::viewer {
 
@@ -29,10 +32,22 @@ struct ControllerModel {
 struct SaveScene {};
 struct SavePicture {};  ///< as the window shows it
 struct Close {};        ///< after asking, if work is unsaved
+struct OpenProject {
+    std::filesystem::path file;
+};
 
 // Answers to the question before closing.
 struct SaveAndClose {};
 struct DiscardAndClose {};
+
+/// The question where to export points to, and how many of them.
+struct ExportChoice {
+    FileQuestion name;
+    double spacing = 0;  ///< metres; 0: all points
+    int every = 1;
+    bool cancel = false;  ///< the user cancels the export
+    bool running = false;
+};
 
 struct ClosingQuestion {
     bool shown = false;
@@ -57,12 +72,15 @@ struct ViewModel {
 
     ScanSet* scans = nullptr;  ///< the open scans; outlive the model
     ScanCommands scan_commands;
-    CommandQueue<SaveScene, SavePicture, Close> commands;
+    CommandQueue<SaveScene, SavePicture, Close, OpenProject> commands;
+    FileQuestion project_name;  ///< the project's file, as asked for by "Save project as..."
+    ExportChoice exporting;
     ClosingQuestion closing;
     Settings settings;  ///< of the window; its side bar's are in `view`
     ControllerModel controller;
     Health health;
-    bool show_help = false;
+    bool show_help = false, show_about = false;
+    UndoHistory history;
 
     // What each feature's actions and panels act on. The model must outlive them, and stay where it is.
     Bookmarking bookmarking() { return {view, bookmarks}; }

@@ -15,6 +15,7 @@
 #include "viewer/frame/rgba.h"
 #include "viewer/opening/first_view.h"
 #include "viewer/ui/on_screen.h"
+#include "viewer/ui/popups.h"
 #include "viewer/window/actions/actions.h"
 #include "viewer/window/panels/panels.h"
 #include "viewer/window/unsaved.h"
@@ -22,12 +23,13 @@
 namespace lucarne::viewer {
 namespace {
 
+constexpr std::chrono::seconds kMessageTime(10);  ///< for which a message is shown
+
 constexpr double kSharp = 0.1;       ///< s without motion until the picture is made at full size
 constexpr double kRest = 0.25;       ///< and at full quality
 constexpr double kStep = 1.0 / 60;   ///< s between the window's frames while something moves
 constexpr double kInFront = 1.2;     ///< m: how near the camera goes to what was clicked twice
 constexpr float kSketchDots = 4;     ///< most pixels of a point while more of them are to come
-constexpr double kNone = -1;         ///< FrameRequest::light_seconds: not even one step
 constexpr uint32_t kIdleFrames = 4;  ///< frames until ImGui's windows have their final sizes
 
 double axis(int less, int more) {
@@ -35,9 +37,12 @@ double axis(int less, int more) {
 }
 
 /// Returns whether more points of a visible scan are to come.
+bool grows(const ScanRow& row) {
+    return row.visible && (row.state == ScanState::sample || row.state == ScanState::converting);
+}
+/// Returns whether points of a visible scan are missing.
 bool is_sketch(const ScanRow& row) {
-    return row.visible && (row.state == ScanState::sample || row.state == ScanState::converting ||
-                           row.state == ScanState::stopped);
+    return grows(row) || (row.visible && row.state == ScanState::stopped);
 }
 
 /// Draws the background of the first picture, before there is one.
@@ -133,6 +138,10 @@ void ViewSession::follow_device() {
 void ViewSession::take_extent() {
     const auto& start = scans_.start();
     if (!start) return;
+    const auto is_open = [&](uint64_t id) {
+        return std::ranges::find(scans_.rows(), id, &ScanRow::id) != scans_.rows().end();
+    };
+    if (!placed_ && !std::ranges::all_of(scans_.shown(), is_open)) return;  // of scans that have been closed
     const bool first = !std::exchange(placed_, true);
     const bool others = shown_scans_ != scans_.shown();
     shown_scans_ = scans_.shown();
@@ -174,10 +183,54 @@ void ViewSession::take_extent() {
 /// Shows the work that was kept on the scans that have been opened first.
 void ViewSession::open_project() {
     own_engine_ = model_.view.method.engine;
-    std::vector<std::string> paths;
-    for (const ScanRow& row : scans_.rows())
-        for (const std::string& path : row.paths) paths.push_back(absolute_path(path));
-    if (project_.open(std::move(paths), *scans_.source())) own_scene_ = 0;  // more points change nothing
+    if (project_.open(*scans_.source())) own_scene_ = 0;  // more points change nothing
+}
+
+/// Replaces the open scans and the work on them by those of a project's file. Errors: those of the file; none
+/// of its scans is there; work would be lost. Then nothing changes.
+Result<void> ViewSession::change_project(const std::filesystem::path& file) {
+    LUCARNE_ASSIGN(const Project project, read_project(file, std::nullopt));
+    FoundScans scans = find_scans(project.scans, file.parent_path());
+    if (scans.found.empty())
+        return failed(file.string(), scans.missing.empty() ? "names no scan" : "none of its scans was found",
+                      "put them beside it");
+    model_.closing.kept = project_.keep();
+    if (!work_to_lose(model_).empty())
+        return failed(file.string(), "is not opened while other work is unsaved", "save that first");
+    const std::vector<ScanRow> rows = scans_.rows();
+    for (const ScanRow& row : rows) scans_.remove(row.id);
+    project_.use(file, std::move(scans.missing));
+    placed_ = sure_ = false;
+    model_.measure.stop();
+    model_.measure.restore({}, model_.measure.metres_per_unit);
+    LUCARNE_TRY(model_.publish.editor.restore({}));
+    model_.history.restart(model_);
+    for (auto& group : scans.found) scans_.open(std::move(group), true);
+    return {};
+}
+
+void ViewSession::open_project_file(const std::filesystem::path& path) {
+    const std::string file = absolute_path(path.string());
+    if (const auto done = change_project(file); !done) {
+        log::warn("{}", model_.view.message = done.error().line());
+        return;
+    }
+    model_.view.message = "opened " + file;
+    model_.project_name.file = file;
+    model_.settings.opened(file);
+    settings_.save();
+}
+
+void ViewSession::save_project() {
+    const auto answer = model_.project_name.take_answer();
+    if (!answer) return;
+    const auto saved = project_.save_as(answer->file, answer->overwrite);
+    model_.project_name.problem = saved ? "" : saved.error().line();
+    if (!saved) return;
+    model_.project_name.shown = false;
+    model_.view.message = "saved " + answer->file.string() + ", which is kept up to date";
+    model_.settings.opened(absolute_path(answer->file.string()));
+    settings_.save();
 }
 
 /// Whether the window shows anything but the start of what is open.
@@ -192,7 +245,7 @@ bool ViewSession::changed_by_user() const {
 /// Applies changes of the open scans. Starts conversions, one after another, once there is something to see.
 void ViewSession::follow_scans() {
     if (scans_.update()) {
-        take_extent();
+        model_.history.without_step(model_, [&] { take_extent(); });
         worker_.set_source(scans_.source());
         if (!scans_.source()) model_.view.picture = nullptr;
         whole_pictures_ = 0;
@@ -262,12 +315,19 @@ bool ViewSession::take_navigation() {
 void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
-    const std::vector<KeyChord> keys = window_.take_pressed_keys();
+    std::vector<KeyChord> keys = window_.take_pressed_keys();
+    if (const auto escape = std::ranges::find(keys, KeyChord{GLFW_KEY_ESCAPE});
+        escape != keys.end() && close_popups())
+        keys.erase(escape);
+    if (model_.show_help || model_.show_about)  // it closes these
+        std::erase_if(keys, [](const KeyChord& chord) { return chord.key == GLFW_KEY_ESCAPE; });
     // Do not test WantCaptureKeyboard: it is also set while the mouse holds an item, and one frame longer, so
     // keys would be lost.
+    const bool menu = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     if (model_.closing.shown)
         closing_.answer(keys);
-    else if (!io.WantTextInput)
+    else if (!io.WantTextInput && !menu && !files_.asks() && !model_.project_name.shown &&
+             !model_.exporting.name.shown)
         run_actions(actions_, keys);
     if (legend_.take(model_.styling()) || take_clip_handles(model_.styling()) ||
         take_comparison_border(model_.rendering()) || take_light_handles(model_.lighting()))
@@ -286,21 +346,35 @@ void ViewSession::take_input() {
 
 void ViewSession::draw_panels() {
     draw_overlay(model_.styling());
-    draw_convergence(model_.view);
+    if (!std::ranges::any_of(scans_.rows(), grows)) draw_convergence(model_.view);
     follow_bookmarks();  // after the keys, so that a bookmark set in the last frame is saved
     draw_menu_bar(model_, actions_);
     if (scans_.rows().empty()) draw_start_page(model_);
     files_.draw();
     draw_closing_question(model_);
+    draw_file_question("Save project", model_.project_name);
+    export_.draw();
     measure_.draw(model_.measuring());
     draw_flythrough(model_.publishing());
     draw_side_bar(model_, placed_);
     if (!shot_ && placed_) draw_mood_bar(model_.lighting());
     if (!shot_) draw_status_line(model_);
     if (model_.show_help) draw_help(model_.show_help, actions_);
-    if (const auto error = worker_.error(); !error) model_.view.message = error.error().line();
+    if (model_.show_about) draw_about(model_.show_about);
+    const auto error = worker_.error();
+    model_.health.picture = error ? "" : error.error().line();
+    if (!shot_) forget_message();
     draw_message(model_,
                  scans_.source() && (!model_.view.picture || model_.view.picture->request != sent_number_));
+}
+
+/// Clears a message that has been shown for a while. Problems stay, because they are not messages (Health).
+void ViewSession::forget_message() {
+    if (model_.view.message != message_) {
+        message_ = model_.view.message;
+        message_since_ = Clock::now();
+    }
+    if (Clock::now() - message_since_ > kMessageTime) model_.view.message.clear();
 }
 
 void ViewSession::send_request() {
@@ -313,8 +387,10 @@ void ViewSession::send_request() {
     request.moving = rest < kRest;
     request.method = model_.view.method;
     request.frame.camera = model_.view.rig.camera();
+    request.frame.front_only = looks_in_from_outside(model_.view.site, request.frame.camera);
     request.frame.size = scaled_size(window_.framebuffer(), model_.view.resolution_scale);
-    request.frame.accumulate = !request.moving;
+    // Averages of a sketch would take the processors from the conversion that replaces it.
+    request.frame.accumulate = !request.moving && !std::ranges::any_of(scans_.rows(), grows);
     if (shot_) request.pictures = shot_->pictures;
     request.frame.moving = request.frame.stand_in = request.moving;
     if (request.moving) {
@@ -322,7 +398,9 @@ void ViewSession::send_request() {
         request.sketch = rest >= kSharp && !(size == request.frame.size);
         quality_.reduce(request.method.settings, request.method.budgets);
         if (!request.sketch) request.frame.size = size;
-        request.frame.light_seconds = request.sketch ? kNone : kLightShare * model_.view.frame_time;
+        request.frame.light_budget = request.sketch
+                                         ? gi::StepBudget::paused()
+                                         : gi::StepBudget::timed(kLightShare * model_.view.frame_time);
     }
     if (std::ranges::any_of(scans_.rows(), is_sketch))
         request.frame.most_pixels =
@@ -353,8 +431,11 @@ Result<void> ViewSession::carry_out() {
         },
         [&](SavePicture) { save_picture(); },
         [&](Close) { closing_.request(); },
+        [&](const OpenProject& open) { open_project_file(open.file); },
     };
     for (const auto& command : model_.commands.take()) std::visit(run, command);
+    save_project();
+    export_.follow();
     return save_shot();
 }
 
@@ -422,6 +503,7 @@ Result<void> ViewSession::show_until_closed() {
         const bool drawn = window_.draw(shot_.has_value());
         LUCARNE_TRY(carry_out());
         if (drawn) window_.swap();
+        if (!ImGui::IsAnyMouseDown() && !ImGui::IsAnyItemActive()) model_.history.follow(model_);
         send_request();
         if (seconds_at_rest() > kRest) project_.follow(changed_by_user());
         if (drawn) model_.health.frames.add(std::chrono::duration<double>(Clock::now() - awake).count());

@@ -22,6 +22,7 @@
 #include "viewer/window/file_opener.h"
 #include "viewer/window/kept_project.h"
 #include "viewer/window/kept_settings.h"
+#include "viewer/window/point_export.h"
 #include "viewer/window/view_model.h"
 #include "viewer/window/window.h"
 
@@ -51,13 +52,16 @@ class ViewSession {
           interrupt_(interrupt),
           settings_(window, model),
           files_(window, model, settings_),
-          project_(model, keeps_project && !shot_),
+          project_(model, shot_           ? KeptProject::Mode::show_only
+                          : keeps_project ? KeptProject::Mode::on
+                                          : KeptProject::Mode::off),
           closing_(window, model, [this] { return project_.keep(); }),
           bookmarks_([&window](const io::Image8& image) { return window.make_texture(image); },
                      [&window](unsigned texture) { window.free_texture(texture); }),
           quality_(model.view.frame_time, worker.device().software ? kFirstScale : 1),
           publish_([&window] { return window.renew_worker_device(Window::Hidden::rendering); },
-                   &Window::wake) {}
+                   &Window::wake),
+          export_(model, &Window::wake) {}
 
     /// Runs until the window is closed. `keeps_project`: shows and keeps the user's work on the scan
     /// (viewer/project). If it ends without asking the user (SIGTERM, an error), saves unsaved
@@ -78,6 +82,9 @@ class ViewSession {
     void follow_scans();
     void take_extent();
     void open_project();
+    void open_project_file(const std::filesystem::path& file);
+    Result<void> change_project(const std::filesystem::path& file);
+    void save_project();
     bool changed_by_user() const;
     void take_input();
     bool take_navigation();
@@ -90,6 +97,7 @@ class ViewSession {
     void save_picture();
     Result<void> save_shot();
     double seconds_at_rest() const;
+    void forget_message();
 
     Window& window_;
     PictureWorker& worker_;
@@ -117,13 +125,16 @@ class ViewSession {
     LightSession light_{&Window::wake};
     MeasureSession measure_{&Window::wake};
     PublishSession publish_;
+    PointExport export_;
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
     uint64_t own_scene_ = 1;  ///< the scene version before any change by the user
     std::string own_engine_;  ///< with which the window has opened
     uint64_t scene_seen_ = 0;
-    uint32_t whole_pictures_ = 0;    ///< complete pictures in the displayed average
-    uint32_t idle_frames_ = 0;       ///< frames of the window with nothing open
+    uint32_t whole_pictures_ = 0;  ///< complete pictures in the displayed average
+    uint32_t idle_frames_ = 0;     ///< frames of the window with nothing open
+    std::string message_;          ///< the message that is shown
+    Clock::time_point message_since_;
     Clock::time_point last_moving_;  ///< when the last picture of a motion arrived, or the motion began
     Clock::time_point moved_ = Clock::now() - std::chrono::hours(1);
 };

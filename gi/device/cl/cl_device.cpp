@@ -59,6 +59,12 @@ std::string first_error(const std::string& log) {
 
 }  // namespace
 
+Result<void> opencl_available() {
+    if (!find_device(CL_DEVICE_TYPE_GPU) && !find_device(CL_DEVICE_TYPE_CPU))
+        return failed("OpenCL", "no device was found", kInstall);
+    return {};
+}
+
 Result<std::unique_ptr<ClDevice>> ClDevice::open(Device& budget) {
     cl_device_id id = find_device(CL_DEVICE_TYPE_GPU);
     const bool is_gpu = id != nullptr;

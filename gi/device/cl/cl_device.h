@@ -28,6 +28,9 @@ namespace lucarne::gi {
 
 class ClDevice;
 
+/// Returns whether there is an OpenCL device. Errors: there is none, and which package brings one.
+Result<void> opencl_available();
+
 /// A buffer in the memory of an OpenCL device. It counts against the memory cap of the OpenGL device.
 /// Move-only.
 class ClBuffer {

@@ -1,10 +1,7 @@
 #include "gi/engines/direct/direct.h"
 
-#include <limits>
-
 #include "gi/bounce_options.h"
 #include "gi/gl_frame.h"
-#include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
 #include "gi/lighting/light_options.h"
@@ -18,6 +15,7 @@ constexpr EngineInfo kInfo{.name = "direct",
                            .label = "Direct light",
                            .description = "direct light with shadow maps",
                            .options = kOptions,
+                           .needs = {.light_cut = true, .light_views = true},
                            .direct_only = true};
 
 class DirectEngine : public Engine {
@@ -49,18 +47,15 @@ Result<void> DirectEngine::render(Frame& frame) {
     frame.times.begin("emission");
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, false));
     frame.times.end();
-    // In motion shadows may be those of a moment ago; one view a frame is brought up to date.
-    const bool in_parts = frame.moving && frame.light_seconds < std::numeric_limits<double>::infinity();
+    // In motion shadows may be those of a moment ago; they are renewed as far as the time goes.
+    const bool in_parts = frame.moving && !frame.light_budget.whole();
     if (!in_parts) light_index_ = frame.index;
     Frame sampled = frame;
     sampled.index = light_index_;
     const std::vector<LightView> views = light_views(sampled, sky_.directions);
     Device& device = frame.gl.device;
     light_gbuffers_.begin(device, views, views.size());
-    if (in_parts) {
-        const TimedPass timed(frame, "light G-buffer");
-        LUCARNE_TRY(light_gbuffers_.draw_missing(device, views));
-    }
+    if (in_parts) LUCARNE_TRY(light_gbuffers_.renew(frame, views));
     for (const LightView& from : views) {
         if (frame.stopped()) return {};
         frame.times.begin("light G-buffer");

@@ -63,6 +63,7 @@ constexpr EngineInfo kInfo{.name = "reference",
                            .label = "Path tracer",
                            .description = "path tracing over the same surfels: slow, and the truth",
                            .options = kOptions,
+                           .needs = {.light_cut = true},
                            .layers = kLayers,
                            .reports_progress = true,
                            .is_reference = true};

@@ -26,6 +26,15 @@ Basis without_lights(Basis basis) {
     return basis;
 }
 
+/// Turns work that is done in one go into a step.
+template <class Body>
+auto step(Body body) {
+    return [body = std::move(body)](auto& work) -> Result<StepResult> {
+        LUCARNE_TRY(body(work));
+        return StepResult::done;
+    };
+}
+
 }  // namespace
 
 uint32_t last_bounce(const EngineSettings& settings) {
@@ -39,10 +48,43 @@ bool keeps_bounces(const AtlasLayout& layout, uint32_t last) {
 void LightingMaker::begin(Basis basis) {
     basis_ = std::move(basis);
     last_ = last_bounce(basis_.settings);
-    bounce_ = 1;
-    made_ = maps_done_ = 0;
+    maps_done_ = 0;
     drawn_views_ = 0;
-    next_ = Step::casters;
+    const bool known = looked_ == without_lights(basis_);
+    std::vector<Step<Work>> steps;
+    steps.push_back({"casters", [this, known](Work& work) { return decode_or_skip(work, known); }});
+    if (!known) {
+        steps.push_back({"importons", step([this](Work& work) {
+                             if (work.frame.settings[kViewVpls]) basis_.camera = work.frame.camera;
+                             return place_importons(work.frame, work.inputs);
+                         })});
+        steps.push_back({"further importons", step([this](Work& work) -> Result<void> {
+                             LUCARNE_TRY(place_further_importons(work.frame, work.inputs));
+                             looked_ = without_lights(basis_);
+                             return {};
+                         })});
+    }
+    steps.push_back({"light views", [this](Work& work) { return draw_light_view(work); }});
+    steps.push_back({"seeds", step([this](Work& work) { return seed(work); })});
+    steps.push_back({"importance", step([this](Work& work) {
+                         return choose_seeds(work.frame, work.target.bounces[0].seeds);
+                     })});
+    for (uint32_t bounce = 1; bounce <= last_; ++bounce) add_bounce(bounce, steps);
+    runner_.start(std::move(steps));
+}
+
+void LightingMaker::add_bounce(uint32_t bounce, std::vector<Step<Work>>& steps) {
+    steps.push_back({"maps", [this, bounce](Work& work) { return draw_maps(work, bounce); }});
+    steps.push_back({"closing", step([this, bounce](Work& work) -> Result<void> {
+                         LUCARNE_TRY(with_atlas(work.target, bounce, [&] {
+                             return close_maps(work.frame, work.target.bounces[bounce - 1].seeds);
+                         }));
+                         if (bounce == last_) work.target.basis = basis_;
+                         return work.inputs.made ? work.inputs.made(bounce) : Result<void>();
+                     })});
+    if (bounce == last_) return;
+    steps.push_back({"races", [this, bounce](Work& work) { return race(work, bounce); }});
+    steps.push_back({"combination", step([this, bounce](Work& work) { return combine(work, bounce); })});
 }
 
 bool LightingMaker::goes_on(const Basis& now) const {
@@ -64,85 +106,44 @@ Result<void> LightingMaker::look(Frame& frame, const Inputs& inputs, const Basis
     return {};
 }
 
-Result<void> LightingMaker::step(Frame& frame, const Inputs& inputs, Lighting& target) {
-    made_ = 0;
-    switch (next_) {
-        case Step::none:
-            return {};
-        case Step::casters: {
-            LUCARNE_ASSIGN(target.layout, atlas_layout(frame.settings[kAtlas], frame.settings[kVpls]));
-            target.basis.index = UINT64_MAX;
-            target.is_united = false;
-            target.bounces.resize(last_);
-            const bool known = looked_ == without_lights(basis_);
-            next_ = known ? Step::light_views : Step::importons;
-            if (known) return step(frame, inputs, target);
-            looked_.index = UINT64_MAX;
-            return decode(frame);
-        }
-        case Step::importons:
-            if (frame.settings[kViewVpls]) basis_.camera = frame.camera;
-            next_ = Step::further_importons;
-            return place_importons(frame, inputs);
-        case Step::further_importons:
-            next_ = Step::light_views;
-            LUCARNE_TRY(place_further_importons(frame, inputs));
-            looked_ = without_lights(basis_);
-            return {};
-        case Step::light_views: {
-            // As many as there are: one that a moving light has may be missing in every frame.
-            const std::vector<LightView> views = light_views_of(frame, inputs);
-            if (inputs.small_steps && drawn_views_ < views.size()) {
-                const TimedPass pass(frame, "light G-buffer");
-                LUCARNE_ASSIGN(const bool drawn, inputs.light_gbuffers.draw_missing(frame.gl.device, views));
-                ++drawn_views_;
-                if (drawn) return {};
-            }
-            next_ = Step::seeds;
-            return step(frame, inputs, target);
-        }
-        case Step::seeds:
-            basis_.scene.lights = inputs.now.scene.lights;
-            basis_.cuts.light_views = inputs.now.cuts.light_views;
-            next_ = Step::importance;
-            return seed(frame, inputs, target.bounces[0].seeds);
-        case Step::importance:
-            next_ = Step::maps;
-            return choose_seeds(frame, target.bounces[0].seeds);
-        case Step::maps:
-        case Step::closing:
-        case Step::races:
-        case Step::combination:
-            break;
-    }
-    Buffer& atlas = target.bounces[keeps_bounces(target.layout, last_) ? bounce_ - 1 : 0].atlas;
-    std::swap(maps_.atlas, atlas);
-    const auto done = step_of_bounce(frame, inputs, target);
-    std::swap(maps_.atlas, atlas);
-    LUCARNE_TRY(done);
-    if (!running()) target.basis = basis_;
-    return {};
+Result<void> LightingMaker::run(Frame& frame, const Inputs& inputs, const StepBudget& budget,
+                                Lighting& target) {
+    Work work{frame, inputs, target};
+    return runner_.run(work, budget, frame.stop);
 }
 
-Result<void> LightingMaker::step_of_bounce(Frame& frame, const Inputs& inputs, Lighting& target) {
-    if (next_ == Step::maps) {
-        LUCARNE_TRY(draw_maps(frame, inputs, target));
-        if (maps_done_ == target.layout.maps) next_ = Step::closing;
-    } else if (next_ == Step::closing) {
-        LUCARNE_TRY(close_maps(frame, target));
-        made_ = bounce_;
-        maps_done_ = 0;
-        next_ = bounce_ < last_ ? Step::races : Step::none;
-    } else if (next_ == Step::races) {
-        LUCARNE_TRY(race(frame, inputs, target));
-        if (maps_done_ == target.layout.maps) next_ = Step::combination;
-    } else {
-        LUCARNE_TRY(combine(frame, inputs, target));
-        ++bounce_;
-        maps_done_ = 0;
-        next_ = Step::maps;
-    }
-    return {};
+/// Calls `draw` while `maps_` has the bounce's atlas.
+template <class Draw>
+Result<void> LightingMaker::with_atlas(Lighting& target, uint32_t bounce, const Draw& draw) {
+    Buffer& atlas = target.bounces[keeps_bounces(target.layout, last_) ? bounce - 1 : 0].atlas;
+    std::swap(maps_.atlas, atlas);
+    const auto done = draw();
+    std::swap(maps_.atlas, atlas);
+    return done;
+}
+
+/// Decodes the casters, unless they are `known`.
+Result<StepResult> LightingMaker::decode_or_skip(Work& work, bool known) {
+    Lighting& target = work.target;
+    LUCARNE_ASSIGN(target.layout, atlas_layout(work.frame.settings[kAtlas], work.frame.settings[kVpls]));
+    target.basis.index = UINT64_MAX;
+    target.is_united = false;
+    target.bounces.resize(last_);
+    if (known) return StepResult::skipped;
+    looked_.index = UINT64_MAX;
+    LUCARNE_TRY(decode(work.frame));
+    return StepResult::done;
+}
+
+/// Draws the G-buffer of one light view that is missing; otherwise they are drawn when VPLs are placed.
+Result<StepResult> LightingMaker::draw_light_view(Work& work) {
+    // As many as there are: one that a moving light has may be missing in every frame.
+    const std::vector<LightView> views = light_views_of(work.frame, work.inputs);
+    if (!work.inputs.small_steps || drawn_views_ == views.size()) return StepResult::skipped;
+    const TimedPass pass(work.frame, "light G-buffer");
+    LUCARNE_ASSIGN(const bool drawn, work.inputs.light_gbuffers.draw_missing(work.frame.gl.device, views));
+    ++drawn_views_;
+    return drawn ? StepResult::again : StepResult::skipped;
 }
 
 Result<void> LightingMaker::decode(Frame& frame) {
@@ -174,7 +175,11 @@ std::vector<LightView> LightingMaker::light_views_of(const Frame& frame, const I
 }
 
 /// Places the VPLs of the first bounce, or candidates for them.
-Result<void> LightingMaker::seed(Frame& frame, const Inputs& inputs, Seeds& target) {
+Result<void> LightingMaker::seed(Work& work) {
+    Frame& frame = work.frame;
+    const Inputs& inputs = work.inputs;
+    basis_.scene.lights = inputs.now.scene.lights;
+    basis_.cuts.light_views = inputs.now.cuts.light_views;
     const EngineSettings& s = frame.settings;
     const uint64_t seed = mix64(s[kSeed], frame.index);
     candidates_count_ = s[kVpls];
@@ -185,7 +190,7 @@ Result<void> LightingMaker::seed(Frame& frame, const Inputs& inputs, Seeds& targ
     return timed(frame, "VPL seeding", [&] {
         return light_seeding_.seed(frame, light_views_of(frame, inputs), inputs.light_gbuffers,
                                    inputs.materials, candidates_count_, seed,
-                                   s[kViewVpls] ? candidates_ : target);
+                                   s[kViewVpls] ? candidates_ : work.target.bounces[0].seeds);
     });
 }
 
@@ -207,47 +212,59 @@ uint32_t LightingMaker::end_of_step(const Inputs& inputs, uint32_t maps) const {
     return inputs.small_steps ? std::min(maps_done_ + kMapsOfStep, maps) : maps;
 }
 
-/// Draws the shadow maps of the bounce, or the next of them.
-Result<void> LightingMaker::draw_maps(Frame& frame, const Inputs& inputs, Lighting& target) {
-    Device& device = frame.gl.device;
-    const DeviceCut& cut = *frame.gl.cuts.light;
-    if (maps_done_ == 0) LUCARNE_TRY(clear_shadow_maps(device, cut, target.layout, needs_sources(), maps_));
-    const uint32_t end = end_of_step(inputs, target.layout.maps);
-    LUCARNE_TRY(splat_shadow_maps(device, cut, target.bounces[bounce_ - 1].seeds, maps_done_, end,
-                                  frame.times, maps_));
-    maps_done_ = end;
-    return {};
+/// Notes that the maps before `end` are done.
+StepResult LightingMaker::maps_result(uint32_t end, uint32_t maps) {
+    maps_done_ = end == maps ? 0 : end;
+    return end == maps ? StepResult::done : StepResult::again;
 }
 
-Result<void> LightingMaker::close_maps(Frame& frame, Lighting& target) {
+/// Draws the shadow maps of the bounce, or the next of them.
+Result<StepResult> LightingMaker::draw_maps(Work& work, uint32_t bounce) {
+    Device& device = work.frame.gl.device;
+    const DeviceCut& cut = *work.frame.gl.cuts.light;
+    const AtlasLayout& layout = work.target.layout;
+    const uint32_t end = end_of_step(work.inputs, layout.maps);
+    const auto drawn = with_atlas(work.target, bounce, [&]() -> Result<void> {
+        if (maps_done_ == 0) LUCARNE_TRY(clear_shadow_maps(device, cut, layout, bounce < last_, maps_));
+        return splat_shadow_maps(device, cut, work.target.bounces[bounce - 1].seeds, maps_done_, end,
+                                 work.frame.times, maps_);
+    });
+    LUCARNE_TRY(drawn);
+    return maps_result(end, layout.maps);
+}
+
+Result<void> LightingMaker::close_maps(Frame& frame, Seeds& seeds) {
     LUCARNE_TRY(close_shadow_maps(frame.gl.device, frame.times, maps_));
     // Each averaged frame blurs less, so that the average converges.
     const float shrink = 1.0f / static_cast<float>(frame.index + 1);
-    return timed(frame, "VPL footprints", [&] {
-        return trim_footprints(frame.gl.device, maps_, shrink, target.bounces[bounce_ - 1].seeds);
-    });
+    return timed(frame, "VPL footprints",
+                 [&] { return trim_footprints(frame.gl.device, maps_, shrink, seeds); });
 }
 
 /// Finds places for the VPLs of the next bounce, or for some of them.
-Result<void> LightingMaker::race(Frame& frame, const Inputs& inputs, Lighting& target) {
+Result<StepResult> LightingMaker::race(Work& work, uint32_t bounce) {
+    Frame& frame = work.frame;
     redistribution_.best_candidate = frame.settings[kBestCandidate];
     redistribution_.footprint_variance = footprint_variance(frame.index);
-    const auto salt = static_cast<uint32_t>(mix64(mix64(frame.settings[kSeed], frame.index), bounce_));
-    const uint32_t end = end_of_step(inputs, target.layout.maps);
+    const auto salt = static_cast<uint32_t>(mix64(mix64(frame.settings[kSeed], frame.index), bounce));
+    const uint32_t maps = work.target.layout.maps, end = end_of_step(work.inputs, maps);
     const TimedPass pass(frame, "VPL redistribution");
-    LUCARNE_TRY(race_maps(frame.gl.device, *frame.gl.cuts.light, maps_, inputs.materials, glossy(frame), salt,
-                          target.bounces[bounce_ - 1].seeds, maps_done_, end, redistribution_,
-                          target.bounces[bounce_].seeds));
-    maps_done_ = end;
-    return {};
+    LUCARNE_TRY(with_atlas(work.target, bounce, [&] {
+        return race_maps(frame.gl.device, *frame.gl.cuts.light, maps_, work.inputs.materials, glossy(frame),
+                         salt, work.target.bounces[bounce - 1].seeds, maps_done_, end, redistribution_,
+                         work.target.bounces[bounce].seeds);
+    }));
+    return maps_result(end, maps);
 }
 
 /// Places the VPLs of the next bounce.
-Result<void> LightingMaker::combine(Frame& frame, const Inputs& inputs, Lighting& target) {
-    return timed(frame, "VPL redistribution", [&] {
-        return combine_races(frame.gl.device, *frame.gl.cuts.light, maps_, inputs.materials, glossy(frame),
-                             target.bounces[bounce_ - 1].seeds, redistribution_,
-                             target.bounces[bounce_].seeds);
+Result<void> LightingMaker::combine(Work& work, uint32_t bounce) {
+    Frame& frame = work.frame;
+    const TimedPass pass(frame, "VPL redistribution");
+    return with_atlas(work.target, bounce, [&] {
+        return combine_races(frame.gl.device, *frame.gl.cuts.light, maps_, work.inputs.materials,
+                             glossy(frame), work.target.bounces[bounce - 1].seeds, redistribution_,
+                             work.target.bounces[bounce].seeds);
     });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "gi/engines/vpl/lighting.h"
@@ -9,13 +10,14 @@
 #include "gi/engines/vpl/view_importance/view_importance.h"
 #include "gi/frame.h"
 #include "gi/lighting/sky_directions.h"
+#include "gi/steps.h"
 
 namespace lucarne::gi::vpl {
 
 /// Makes a Lighting, step by step: it places VPLs on the surfaces that the lights see, draws their shadow
 /// maps, redistributes the VPLs for the next bounce, and so on. A picture that must not wait for all of it
-/// takes some steps in each frame, and shows earlier light meanwhile. From the first step to the last the
-/// light cut must stay the same, and all of the basis but lights, environment and camera.
+/// takes some steps in each frame, and shows earlier light meanwhile. Until the last step the light cut must
+/// stay the same, and all of the basis but lights, environment and camera.
 class LightingMaker {
  public:
     /// What the steps read beside the frame.
@@ -27,22 +29,22 @@ class LightingMaker {
         uint64_t light_index;  ///< Frame::index by which lights with a size are sampled
         /// Takes small steps, of a few hundredths of a second on two cores.
         bool small_steps = false;
+        /// If set, called when a bounce has its VPLs and maps. If all bounces share an atlas
+        /// (keeps_bounces()), the next bounce overwrites it.
+        std::function<Result<void>(uint32_t bounce)> made;
     };
 
-    /// Starts anew.
+    /// Starts again.
     void begin(Basis basis);
-    void stop() { next_ = Step::none; }
-    bool running() const { return next_ != Step::none; }
+    void stop() { runner_.cancel(); }
+    bool running() const { return runner_.running(); }
     /// Whether what is being made may go on in a frame of another basis.
     bool goes_on(const Basis& now) const;
 
-    /// Does the next step. `target` keeps what earlier steps made; it is whole when this is not running() any
-    /// more. Errors: no device memory, a shader that fails.
-    Result<void> step(Frame& frame, const Inputs& inputs, Lighting& target);
-
-    /// Which bounce has its VPLs and maps since the last step; 0: none. Its atlas is overwritten by the next
-    /// step if all bounces share one (keeps_bounces()).
-    uint32_t made() const { return made_; }
+    /// Takes as many steps as the budget allows and until the frame is given up. `target` keeps what earlier
+    /// steps made; it is whole when this is not running() any more. Errors: no device memory, a shader that
+    /// fails.
+    Result<void> run(Frame& frame, const Inputs& inputs, const StepBudget& budget, Lighting& target);
 
     /// Decodes the casters and measures what matters to the camera, unless that was done for the same basis.
     Result<void> look(Frame& frame, const Inputs& inputs, const Basis& basis);
@@ -54,39 +56,34 @@ class LightingMaker {
     const SkyDirections& sky() const { return sky_; }
 
  private:
-    enum class Step : uint8_t {
-        none,
-        casters,
-        importons,
-        further_importons,
-        light_views,
-        seeds,
-        importance,
-        maps,
-        closing,
-        races,
-        combination
+    struct Work {
+        Frame& frame;
+        const Inputs& inputs;
+        Lighting& target;
     };
 
-    Result<void> step_of_bounce(Frame& frame, const Inputs& inputs, Lighting& target);
+    void add_bounce(uint32_t bounce, std::vector<Step<Work>>& steps);
+    template <class Draw>
+    Result<void> with_atlas(Lighting& target, uint32_t bounce, const Draw& draw);
+    Result<StepResult> decode_or_skip(Work& work, bool known);
+    Result<StepResult> draw_light_view(Work& work);
     Result<void> decode(Frame& frame);
     Result<void> place_importons(Frame& frame, const Inputs& inputs);
     Result<void> place_further_importons(Frame& frame, const Inputs& inputs);
-    Result<void> seed(Frame& frame, const Inputs& inputs, Seeds& target);
+    Result<void> seed(Work& work);
     Result<void> choose_seeds(Frame& frame, Seeds& target);
-    Result<void> draw_maps(Frame& frame, const Inputs& inputs, Lighting& target);
-    Result<void> close_maps(Frame& frame, Lighting& target);
-    Result<void> race(Frame& frame, const Inputs& inputs, Lighting& target);
-    Result<void> combine(Frame& frame, const Inputs& inputs, Lighting& target);
+    Result<StepResult> draw_maps(Work& work, uint32_t bounce);
+    Result<void> close_maps(Frame& frame, Seeds& seeds);
+    Result<StepResult> race(Work& work, uint32_t bounce);
+    Result<void> combine(Work& work, uint32_t bounce);
     uint32_t end_of_step(const Inputs& inputs, uint32_t maps) const;
+    StepResult maps_result(uint32_t end, uint32_t maps);
     std::vector<LightView> light_views_of(const Frame& frame, const Inputs& inputs) const;
-    bool needs_sources() const { return bounce_ < last_; }
 
-    Step next_ = Step::none;
+    StepRunner<Work> runner_;
     Basis basis_;
-    uint32_t bounce_ = 1, last_ = 1;  ///< the bounce that is being made, and the last one
-    uint32_t made_ = 0;
-    uint32_t maps_done_ = 0;  ///< of bounce_, in this kind of step
+    uint32_t last_ = 1;       ///< the last bounce
+    uint32_t maps_done_ = 0;  ///< in the present step
     uint32_t candidates_count_ = 0;
     size_t drawn_views_ = 0;
 

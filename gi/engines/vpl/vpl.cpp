@@ -1,8 +1,6 @@
 #include "gi/engines/vpl/vpl.h"
 
 #include <bit>
-#include <chrono>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,7 +25,8 @@ constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info
 constexpr EngineInfo kInfo{.name = "vpl",
                            .label = "Global illumination",
                            .description = "virtual point lights with imperfect shadow maps",
-                           .options = kOptions};
+                           .options = kOptions,
+                           .needs = {.light_cut = true, .light_views = true}};
 
 class VplEngine : public Engine {
  public:
@@ -138,41 +137,35 @@ Result<void> VplEngine::make_and_shade(Frame& frame, const Basis& basis) {
     const EngineSettings& s = frame.settings;
     const uint32_t last = last_bounce(s);
     const bool keep = keeps_bounces(layout_, last);
-    Lighting& lighting = keep && frame.index == 0 ? lasting_ : other_;
-    const auto shade_bounce = [&](uint32_t bounce) -> Result<void> {
+    const auto shade_bounce = [&](const Lighting& lighting, uint32_t bounce) -> Result<void> {
         if (s[kOnlyBounce] >= 0 && bounce < last) return {};
         return shade(frame, lighting.bounces[bounce - 1], lighting.layout,
                      lighting.bounces[keep ? bounce - 1 : 0].atlas);
     };
     LUCARNE_TRY(timed(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
-    if (!keep || !(lighting.basis == basis)) {
+    const bool first = keep && frame.index == 0;
+    if (!keep || !((first ? lasting_ : other_).basis == basis)) {
         making_.begin(basis);
-        while (making_.running() && !frame.stopped()) {
-            auto done = making_.step(frame, inputs(basis), lighting);
-            if (done && !keep && making_.made()) done = shade_bounce(making_.made());
-            if (!done) making_.stop();
-            LUCARNE_TRY(done);
-        }
+        LightingMaker::Inputs in = inputs(basis);
+        if (!keep) in.made = [&](uint32_t bounce) { return shade_bounce(other_, bounce); };
+        LUCARNE_TRY(making_.run(frame, in, {}, other_));
         if (making_.running()) {  // the frame was given up; frames in motion make light elsewhere
             making_.stop();
             return {};
         }
+        if (first) std::swap(lasting_, other_);
     }
-    for (uint32_t bounce = 1; keep && bounce <= last; ++bounce) LUCARNE_TRY(shade_bounce(bounce));
+    for (uint32_t bounce = 1; keep && bounce <= last; ++bounce)
+        LUCARNE_TRY(shade_bounce(first ? lasting_ : other_, bounce));
     return merge(frame);
 }
 
 /// Continues to make light, for the time that the frame allows.
 Result<void> VplEngine::take_steps(Frame& frame, const Basis& basis) {
     if (!making_.goes_on(basis)) making_.begin(basis);
-    const auto start = std::chrono::steady_clock::now();
-    std::chrono::duration<double> spent{};
     LightingMaker::Inputs in = inputs(basis);
     in.small_steps = true;
-    while (making_.running() && spent.count() <= frame.light_seconds) {
-        LUCARNE_TRY(making_.step(frame, in, other_));
-        spent = std::chrono::steady_clock::now() - start;
-    }
+    LUCARNE_TRY(making_.run(frame, in, frame.light_budget, other_));
     if (making_.running()) return {};
     std::swap(lasting_, other_);
     light_sky_ = making_.sky();
@@ -264,15 +257,14 @@ Result<void> VplEngine::render_in_motion(Frame& frame) {
         LUCARNE_TRY(shade_in_motion(frame, basis));
     } else {
         frame.gl.radiance.clear(0);
-        LUCARNE_TRY(timed(frame, "light G-buffer",
-                          [&] { return light_gbuffers_.draw_missing(frame.gl.device, views_); }));
+        LUCARNE_TRY(light_gbuffers_.renew(frame, views_));
     }
     return wants_direct(frame.settings) ? add_direct(frame, true) : Result<void>{};
 }
 
 Result<void> VplEngine::render(Frame& frame) {
-    const bool in_parts = frame.moving && frame.light_seconds < std::numeric_limits<double>::infinity() &&
-                          keeps_bounces(layout_, last_bounce(frame.settings));
+    const bool in_parts =
+        frame.moving && !frame.light_budget.whole() && keeps_bounces(layout_, last_bounce(frame.settings));
     return in_parts ? render_in_motion(frame) : render_at_once(frame);
 }
 

@@ -83,8 +83,8 @@ HWY_INLINE Mask place_discs(const DiscView& view, const Packed& p, const V3& ori
     if (view.size.pixels > 0 || view.size.most > 0) {
         const F least = hn::Min(pixels_per_tangent_x(view), pixels_per_tangent_y(view));
         const float diameter = view.size.pixels > 0 ? view.size.pixels : view.size.most;
-        const F radius = over(mul(set(0.5f * diameter), hn::Max(scale, hn::Zero(Floats()))), least);
-        discs.radius = view.size.pixels > 0 ? radius : hn::Min(discs.radius, radius);
+        const F stated = over(mul(set(0.5f * diameter), hn::Max(scale, hn::Zero(Floats()))), least);
+        discs.radius = view.size.pixels > 0 ? stated : hn::Min(discs.radius, stated);
     }
     drawn = hn::And(drawn, hn::Gt(add(discs.centre.z, discs.radius), set(view.forward.w)));
     const auto outside = [&](F along, float side) {
@@ -96,7 +96,7 @@ HWY_INLINE Mask place_discs(const DiscView& view, const Packed& p, const V3& ori
 }
 
 /// Computes what place_discs() leaves out; `normals` and `flags` are words c and d of the surfels. Returns
-/// which discs reach before the near plane.
+/// which discs reach before the near plane and are not left out because they face away.
 HWY_INLINE Mask turn_discs(const DiscView& view, U normals, U flags, Discs& discs) {
     const F one = set(1.0f), zero = hn::Zero(Floats());
     V3 toward{zero, zero, one};
@@ -107,11 +107,16 @@ HWY_INLINE Mask turn_discs(const DiscView& view, U normals, U flags, Discs& disc
     }
     discs.push = mul(mul(set(kRimPush), discs.radius), toward.z);
     discs.normal = toward;
-    if (!(view.size.pixels > 0))
-        discs.normal = choose(has_normal(flags), to_view(view, decode_octahedral(normals)), toward);
+    Mask drawn = hn::Eq(zero, zero);
+    if (view.size.front_only || !(view.size.pixels > 0)) {
+        const V3 normal = to_view(view, decode_octahedral(normals));
+        const Mask known = has_normal(flags);
+        if (view.size.front_only) drawn = hn::Not(hn::And(known, hn::Gt(dot(normal, toward), zero)));
+        if (!(view.size.pixels > 0)) discs.normal = choose(known, normal, toward);
+    }
     const F across = hn::Max(sub(one, mul(discs.normal.z, discs.normal.z)), zero);
     discs.extent = mul(discs.radius, hn::Sqrt(across));
-    return hn::Gt(add(discs.centre.z, discs.extent), set(view.forward.w));
+    return hn::And(drawn, hn::Gt(add(discs.centre.z, discs.extent), set(view.forward.w)));
 }
 
 /// Discs of a larger radius, in pixels, are drawn exactly.

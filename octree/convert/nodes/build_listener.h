@@ -16,6 +16,9 @@ namespace lucarne::octree {
 class BuildListener {
  public:
     virtual ~BuildListener() = default;
+    /// Points of the inputs, in their order, while they are read for the first time: records of the unified
+    /// schema. Not called by a build that is resumed after that.
+    virtual void read(std::span<const std::byte> records) = 0;
     /// All points have been read: bounds, root cube and count are those of the cache. The header's schema is
     /// still that of the inputs; `records` is that of the nodes.
     virtual void scanned(const SourceHeader& header, const io::Schema& records) = 0;

@@ -116,7 +116,8 @@ Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes) {
     };
 }
 
-Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first, EarlyCount* early) {
+Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first, EarlyCount* early,
+                              const Visit& seen_by) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ScanFacts facts{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
     const auto& schema = inputs.schema();
@@ -136,7 +137,7 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
                 depth.add(records);
                 facts.without_normal += normals.missing(records, schema.stride);
                 if (early) early->add(schema, records, seen.min, seen.max);
-                return {};
+                return seen_by ? seen_by(records) : Result<void>();
             }));
         for (const auto& loss : left.losses)
             log::warn("{}: {}", inputs.source(input).info().path, counted(loss.count, loss.what));

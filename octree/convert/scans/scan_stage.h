@@ -29,8 +29,8 @@ class EarlyCount;
 
 /// Reads the inputs from `first` on and logs what each lost; the inputs before it only contribute their
 /// schemas. Errors: unreadable inputs, no points at all, coordinates too far apart for any cube.
-/// `early` gets all points as well.
+/// `early` and `seen_by` get all points as well.
 Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first = 0,
-                              EarlyCount* early = nullptr);
+                              EarlyCount* early = nullptr, const Visit& seen_by = {});
 
 }  // namespace lucarne::octree

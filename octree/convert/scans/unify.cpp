@@ -74,6 +74,12 @@ Result<Unifier> Unifier::create(std::vector<const io::PointSource*> sources, boo
     return unifier;
 }
 
+uint64_t Unifier::declared_points() const {
+    uint64_t points = 0;
+    for (const io::PointSource* source : sources_) points += source->info().declared_points;
+    return points;
+}
+
 bool Unifier::has_normals(size_t input) const {
     const auto* normal = sources_[input]->schema().find(io::names::normal);
     return normal && is_normal(*normal);

@@ -22,6 +22,8 @@ class Unifier {
     const io::Schema& schema() const { return schema_; }
     size_t inputs() const { return sources_.size(); }
     const io::PointSource& source(size_t input) const { return *sources_[input]; }
+    /// Points of all inputs, as far as their headers tell.
+    uint64_t declared_points() const;
     /// Whether the input's points have normals of their own.
     bool has_normals(size_t input) const;
     /// Returns the records of `batch` in the unified schema: either its own bytes or `storage`, which is

@@ -7,7 +7,8 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr EngineInfo kInfo{.name = "opencl", .label = "OpenCL", .description = "one colour, by OpenCL"};
+constexpr EngineInfo kInfo{
+    .name = "opencl", .label = "OpenCL", .description = "one colour, by OpenCL", .needs = {.opencl = true}};
 
 constexpr const char* kFill =
     "kernel void fill(global float4* radiance, uint pixels) {\n"

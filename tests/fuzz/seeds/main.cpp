@@ -50,6 +50,27 @@ std::string Seeds::taken(const std::filesystem::path& path) {
 
 namespace {
 
+/// Makes a project of each scene of a folder, with measurements and a flythrough.
+void project_seeds(const std::filesystem::path& data, const Seeds& seeds) {
+    const auto text = [](const std::filesystem::path& path) {
+        std::ifstream in(path, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    const std::string measurements =
+        R"({"measurements": [{"kind": "distance", "name": "wall", "points": [{"position": [0, 0, 1],
+            "coordinates": ["0", "0", "1"]}, {"position": [4, 0, 1], "coordinates": ["4", "0", "1"]}]}]})";
+    for (const auto& scene : std::filesystem::directory_iterator(data / "scenes")) {
+        if (scene.path().extension() != ".json") continue;
+        std::string project =
+            R"({"version": 1, "scans": ["/scans/a.las", ["b.laz", "c.laz"]], "mood": "evening")";
+        project += ", \"scene\": " + text(scene.path()) + ", \"measurements\": " + measurements;
+        for (const auto& path : std::filesystem::directory_iterator(data / "flythroughs"))
+            if (path.path().filename() == scene.path().filename())
+                project += ", \"flythrough\": " + text(path.path());
+        seeds.add(scene.path().filename().string(), project + "}");
+    }
+}
+
 void make_all(const std::filesystem::path& folder) {
     const std::filesystem::path data = LUCARNE_SOURCE_DIR "/data";
     // Without `recursive` nothing inside a folder is copied.
@@ -58,6 +79,7 @@ void make_all(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
     std::filesystem::copy(data / "scenes", folder / "scene", copies);
     std::filesystem::copy(data / "flythroughs", folder / "path", copies);
+    bake_seeds(Seeds(folder / "bake"));
     cache_seeds(Seeds(folder / "cache"));
     codec_seeds(Seeds(folder / "codec"));
     copc_seeds(Seeds(folder / "copc"));
@@ -68,6 +90,7 @@ void make_all(const std::filesystem::path& folder) {
     pcd_seeds(Seeds(folder / "pcd"));
     picture_seeds(Seeds(folder / "exr"), Seeds(folder / "hdr"), Seeds(folder / "png"),
                   Seeds(folder / "jpeg"));
+    project_seeds(data, Seeds(folder / "project"));
     ply_seeds(Seeds(folder / "ply"));
     text_seeds(Seeds(folder / "text"));
 }

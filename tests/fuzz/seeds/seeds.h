@@ -24,6 +24,7 @@ class Seeds {
 };
 
 // One function for each format, each in its own file: small valid files of every variant.
+void bake_seeds(const Seeds& seeds);
 void cache_seeds(const Seeds& seeds);
 void codec_seeds(const Seeds& seeds);
 void copc_seeds(const Seeds& seeds);

@@ -16,6 +16,7 @@
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"
 #include "tests/gi/engines/even_order.h"
+#include "tests/gi/engines/needed_cuts.h"
 #include "tests/gi/engines/test_settings.h"
 
 namespace lucarne::gi::scenes {
@@ -148,7 +149,8 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
     LUCARNE_ASSIGN(Buffer radiance, device.buffer(pixels * sizeof(glm::vec4), "radiance"));
     radiance.clear(0x7fc00000u);  // NaN: shows pixels that the engine does not write
     PassTimes times(device);
-    const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(scene.lights.size(), &cut), &cut};
+    LUCARNE_ASSIGN(const auto engine, make_engine(engine_name));
+    const FrameCuts cuts = needed_cuts(engine->info(), cut, scene.lights.size());
     const std::vector<Material> materials =
         scene.materials.empty() ? std::vector{material(1, 0, 1, 0)} : scene.materials;
     GlFrame on_device{device, pool, cuts, gbuffer, radiance};
@@ -161,7 +163,6 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
                 .bounds = {glm::vec3(source.header().min), glm::vec3(source.header().max)},
                 .gl = on_device,
                 .times = times};
-    LUCARNE_ASSIGN(const auto engine, make_engine(engine_name));
     LUCARNE_TRY(engine->draw(frame));
     return Rendered{radiance.download_all<glm::vec4>(pixels),
                     gbuffer.texels.download_all<GBufferTexel>(pixels), engine->stats()};

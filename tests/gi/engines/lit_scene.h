@@ -2,13 +2,13 @@
 #pragma once
 
 #include <atomic>
-#include <limits>
 #include <optional>
 
 #include <gtest/gtest.h>
 
 #include "gi/engine.h"
 #include "gi/gl_frame.h"
+#include "tests/gi/engines/needed_cuts.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/test_settings.h"
 
@@ -53,7 +53,7 @@ struct LitOptions {
     EngineSettings settings = test_settings();
     uint64_t index = 0;
     bool moving = false;
-    double light_seconds = std::numeric_limits<double>::infinity();
+    StepBudget light_budget{};
     const std::atomic<bool>* stop = nullptr;
     std::shared_ptr<const Environment> environment = nullptr;
     Unlit unlit{};
@@ -85,7 +85,7 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
     EXPECT_TRUE(radiance);
     radiance->clear(0x7fc00000u);  // NaN: the engine has to write every pixel
     PassTimes times(device);
-    const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(options.lights.size(), &cut), &cut};
+    const FrameCuts cuts = needed_cuts(engine.info(), cut, options.lights.size());
     GlFrame on_device{device, (*loaded)->pool, cuts, gbuffer, *radiance};
     Frame frame{.camera = camera,
                 .lights = options.lights,
@@ -97,7 +97,7 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 .bounds = options.bounds.value_or(
                     Bounds{glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)}),
                 .moving = options.moving,
-                .light_seconds = options.light_seconds,
+                .light_budget = options.light_budget,
                 .stop = options.stop,
                 .unlit = options.unlit,
                 .gl = on_device,

@@ -45,15 +45,15 @@ class GBufferTest : public OnDevice, public ::testing::WithParamInterface<bool> 
         device->use_native_passes(GetParam());
     }
     Picture draw(std::vector<Surfel> surfels, const CameraView& view, uint32_t keep = 1024,
-                 bool blended = false) {
+                 bool blended = false, const PointSize& size = {}) {
         const SurfelCloud cloud(std::move(surfels), {{-32, -32, -32}, 64}, keep);
         auto loaded = load_cloud(*device, cloud);
         EXPECT_TRUE(loaded) << loaded.error().line();
         GBuffer target;
-        const auto drawn = rasterize(*device, (*loaded)->cut, view, target);
+        const auto drawn = rasterize(*device, (*loaded)->cut, view, target, size);
         EXPECT_TRUE(drawn) << drawn.error().line();
         if (blended) {
-            const auto mixed = blend(*device, (*loaded)->cut, view, target);
+            const auto mixed = blend(*device, (*loaded)->cut, view, target, size);
             EXPECT_TRUE(mixed) << mixed.error().line();
         }
         const size_t pixels = size_t{view.width} * view.height;

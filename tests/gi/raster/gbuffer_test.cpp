@@ -46,6 +46,27 @@ TEST_P(GBufferTest, NormalsAreTurnedTowardTheViewer) {
     EXPECT_LT(decode_octahedral(p.texels[32 * 64 + 32].normal).y, -0.999f);
 }
 
+TEST_P(GBufferTest, PointsThatFaceAwayAreLeftOutOnRequest) {
+    const CameraView view = look({0, 0, 0}, {0, 1, 0}, 64, 64);
+    const Surfel away{{0, 3, 0}, glm::normalize(glm::vec3(0, 1, 0.2f)), kWhite, 0, 0.1f, 0},
+        behind{{0, 5, 0}, glm::normalize(glm::vec3(0.9f, -0.1f, 0)), kWhite, 0, 0.1f, 7},
+        bare{{0.4f, 3, 0.4f}, glm::vec3(0.0f), kWhite, 0, 0.01f, 5};
+    for (const float pixels : {0.0f, 9.0f})
+        for (const bool front_only : {false, true}) {
+            const Picture p =
+                draw({away, behind, bare}, view, 1024, false, {.pixels = pixels, .front_only = front_only});
+            const auto shown = [&](uint32_t material) {
+                return std::ranges::count_if(p.texels, [&](const GBufferTexel& texel) {
+                    return texel.depth > 0 && (texel.material & 0xffff) == material;
+                });
+            };
+            EXPECT_EQ(shown(0) > 0, !front_only) << pixels;
+            EXPECT_EQ(p.texels[32 * 64 + 32].material & 0xffff, front_only ? 7u : 0u)
+                << "seen through the one that faces away, " << pixels;
+            EXPECT_GT(shown(5), 0) << "without a normal, " << pixels;
+        }
+}
+
 TEST_P(GBufferTest, SurfelWithoutANormalFacesTheViewer) {
     const Surfel bare{{1, 3, 1}, glm::vec3(0.0f), kWhite, 0, 0.1f, 0};
     const Picture p = draw({bare}, look({0, 0, 0}, {1, 3, 1}, 64, 64));

@@ -67,16 +67,19 @@ std::vector<Shown> table() {
     shifted.right.w = 0.41f;
     shifted.up.w = -0.27f;
     const Light spot{{0, -1, 0.5f, std::cos(0.7f)}, {0, 1, 0, 1}, {1, 1, 1, 0}};
-    return {{"small discs", clutter(0.008f), camera, {}},
-            {"discs of some pixels", clutter(0.03f), shifted, {}},
-            {"large discs", clutter(0.2f), camera, {}},
-            {"orthographic", clutter(0.02f), orthographic(), {}},
-            {"a spot's view", clutter(0.02f), spot_view(spot, 256), {}},
-            {"points of three pixels", clutter(0.02f), camera, {.scale = 1, .pixels = 3}},
-            {"points of fifty pixels", clutter(0.1f), camera, {.scale = 1, .pixels = 50}},
-            {"discs of six pixels at most", clutter(0.1f), camera, {.scale = 1, .most = 6}},
-            {"half the radii", clutter(0.02f), camera, {.scale = 0.5f}},
-            {"one pixel", clutter(0.05f), look({0, 0, 0}, {0, 1, 0}, 1, 1, 0.9f), {}}};
+    return {
+        {"small discs", clutter(0.008f), camera, {}},
+        {"discs of some pixels", clutter(0.03f), shifted, {}},
+        {"large discs", clutter(0.2f), camera, {}},
+        {"orthographic", clutter(0.02f), orthographic(), {}},
+        {"a spot's view", clutter(0.02f), spot_view(spot, 256), {}},
+        {"points of three pixels", clutter(0.02f), camera, {.scale = 1, .pixels = 3}},
+        {"points of fifty pixels", clutter(0.1f), camera, {.scale = 1, .pixels = 50}},
+        {"discs of six pixels at most", clutter(0.1f), camera, {.scale = 1, .most = 6}},
+        {"front sides only", clutter(0.03f), camera, {.front_only = true}},
+        {"front sides of points of three pixels", clutter(0.02f), camera, {.pixels = 3, .front_only = true}},
+        {"half the radii", clutter(0.02f), camera, {.scale = 0.5f}},
+        {"one pixel", clutter(0.05f), look({0, 0, 0}, {0, 1, 0}, 1, 1, 0.9f), {}}};
 }
 
 class NativePasses : public OnDevice {

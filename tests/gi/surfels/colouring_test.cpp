@@ -98,6 +98,7 @@ TEST(Colouring, EveryAttributeGivesItsPointsTheColoursOfItsKey) {
     EXPECT_COLOUR(points.colour(by(ColourBy::scan)), ordinal_colour(3));
     EXPECT_COLOUR(points.colour(by(ColourBy::scan), 0, 5), ordinal_colour(8)) << "of several inputs";
     EXPECT_COLOUR(points.colour(by(ColourBy::normal)), glm::vec3(0.5f, 0.5f, 1.0f));
+    EXPECT_COLOUR(points.colour(by(ColourBy::clay)), glm::vec3(0.8f, 0.78f, 0.75f));
     Look warmth = by(ColourBy::attribute, ValueRange{0, 1});
     warmth.attribute = "warmth.1";
     warmth.map = ColourMap::grey;

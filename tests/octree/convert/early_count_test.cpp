@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
@@ -244,6 +245,7 @@ TEST(EarlyCount, ChangesAfterwardsAreNoticed) {
 /// Notes how far the distribution of the points came.
 class SortingProgress final : public BuildListener {
  public:
+    void read(std::span<const std::byte>) override {}
     void scanned(const SourceHeader&, const io::Schema&) override {}
     void building(const io::Schema&) override {}
     void settled(std::span<const format::Entry>) override {}

@@ -165,26 +165,6 @@ TEST(GrowingBuild, EverySourceKnowsWhichPointsNoCameraSaw) {
     }
 }
 
-TEST(GrowingBuild, EverySourceHasEachPointOnceAndMoreOfThemThanTheLast) {
-    const TempFolder folder;
-    const auto build = GrowingBuild::open(inputs_of(500'000), options_for(folder / "a.luc"));
-    ASSERT_TRUE(build) << build.error().line();
-    const auto sources = all_sources(**build);
-    ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
-    EXPECT_GT(sources.size(), 3u) << "something comes between the first two and the cache";
-    size_t last = 0;
-    for (const auto& source : sources) {
-        ASSERT_TRUE(is_directory(source->nodes()));
-        auto numbers = numbers_in(*source);
-        ASSERT_FALSE(numbers.empty());
-        EXPECT_GE(numbers.size(), last);
-        last = numbers.size();
-        std::ranges::sort(numbers);
-        EXPECT_EQ(std::ranges::adjacent_find(numbers), numbers.end()) << "a point is drawn twice";
-    }
-    EXPECT_EQ(last, 500'000u);
-}
-
 TEST(GrowingBuild, EndsWithTheCacheThatABuildAloneMakes) {
     const TempFolder folder;
     const auto build = GrowingBuild::open(inputs_of(200'000), options_for(folder / "a.luc"));
@@ -238,6 +218,51 @@ TEST(GrowingBuild, TheSurfaceKeepsItsAreaWhileItIsReplaced) {
     ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
     EXPECT_GT(sources.size(), 3u);
     for (size_t i = 0; i < sources.size(); ++i)
+        for (uint32_t level = 0; level < 5; ++level)
+            EXPECT_NEAR(surface_at(*sources[i], level) / kSurface, 1.0, 0.1)
+                << "source " << i << ", level " << level;
+}
+
+TEST(GrowingBuild, EverySourceHasEachPointOnceAndMoreOfThemThanTheLast) {
+    for (const uint64_t read_points : {0, 100'000}) {
+        const TempFolder folder;
+        GrowingOptions options = options_for(folder / "a.luc");
+        options.read_points = read_points;
+        const auto build = GrowingBuild::open(inputs_of(500'000), std::move(options));
+        ASSERT_TRUE(build) << build.error().line();
+        const auto sources = all_sources(**build);
+        ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
+        EXPECT_GT(sources.size(), 3u) << "something comes between the first two and the cache";
+        size_t last = 0;
+        for (const auto& source : sources) {
+            ASSERT_TRUE(is_directory(source->nodes()));
+            auto numbers = numbers_in(*source);
+            ASSERT_FALSE(numbers.empty());
+            EXPECT_GE(numbers.size(), last);
+            last = numbers.size();
+            std::ranges::sort(numbers);
+            EXPECT_EQ(std::ranges::adjacent_find(numbers), numbers.end()) << "a point is drawn twice";
+        }
+        EXPECT_EQ(last, 500'000u);
+    }
+}
+
+TEST(GrowingBuild, ItsFirstPassOverASmallScanShowsTheWholeScan) {
+    const TempFolder folder;
+    GrowingOptions options = options_for(folder / "a.luc", NormalsMode::estimate);
+    options.read_points = 200'000;
+    const auto build = GrowingBuild::open(inputs_of(150'000, false), std::move(options));
+    ASSERT_TRUE(build) << build.error().line();
+    const auto sources = all_sources(**build);
+    ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
+    ASSERT_GT(sources.size(), 3u);
+    const auto some = numbers_in(*sources[1]);
+    EXPECT_NEAR(static_cast<double>(some.size()), 20'000, 2'000) << "soon";
+    auto numbers = numbers_in(*sources[2]);
+    std::ranges::sort(numbers);
+    ASSERT_EQ(numbers.size(), 150'000u) << "before any node was built";
+    EXPECT_EQ(std::ranges::adjacent_find(numbers), numbers.end());
+    for (size_t i = 1; i < sources.size(); ++i)
         for (uint32_t level = 0; level < 5; ++level)
             EXPECT_NEAR(surface_at(*sources[i], level) / kSurface, 1.0, 0.1)
                 << "source " << i << ", level " << level;

@@ -4,8 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/scene/views.h"
 #include "tests/gi/raster/drawn_surfels.h"
-#include "viewer/frame/views.h"
 
 namespace lucarne::gi {
 namespace {
@@ -24,7 +24,7 @@ class Antialiasing : public GBufferTest {
         std::vector<double> mean(kSide * kSide);
         for (uint32_t frame = 0; frame < frames; ++frame) {
             CameraView view = view_of(kSide);
-            viewer::shift_rays(view, frame);
+            gi::shift_rays(view, frame);
             const Picture p = draw({disc}, view);
             for (size_t at = 0; at < mean.size(); ++at) mean[at] += (p.empty(at) ? 0.0 : 1.0) / frames;
         }
@@ -78,10 +78,10 @@ INSTANTIATE_TEST_SUITE_P(Passes, Antialiasing, ::testing::Bool(), passes_name);
 TEST(RayShift, FirstFrameIsThatOfASinglePicture) {
     const CameraView single = view_of(kSide);
     CameraView first = single;
-    viewer::shift_rays(first, 7);
+    gi::shift_rays(first, 7);
     EXPECT_NE(first, single);
     EXPECT_LE(std::max(std::abs(first.right.w), std::abs(first.up.w)), 0.5f);
-    viewer::shift_rays(first, 0);
+    gi::shift_rays(first, 0);
     EXPECT_EQ(first, single);
 }
 

@@ -17,6 +17,7 @@ class CutChoice : public testing::Test {
     octree::test::PlaneSource source{7, kPoints, 64.0};
     gi::SceneCamera camera;
     std::vector<gi::SceneLight> lights{1};
+    gi::EngineNeeds needs{.light_cut = true, .light_views = true};
 
     CutChoice() {
         camera.position = {20, 20, 3};
@@ -25,7 +26,7 @@ class CutChoice : public testing::Test {
         lights[0].target = {32, 32, 0};
     }
 
-    CutPurpose purpose() const { return {source, camera, {640, 360}, lights, 512, CutBudgets{}, 100}; }
+    CutPurpose purpose() const { return {source, camera, {640, 360}, needs, lights, 512, CutBudgets{}, 100}; }
     static CutRoom room(uint64_t nodes) {
         return {nodes, [](const octree::NodeInfo&) { return uint64_t{1}; }};
     }
@@ -96,6 +97,21 @@ TEST_F(CutChoice, WhereNothingFitsTheRootIsStillAsked) {
     const CutSet cuts = chooser.choose(purpose(), room(0));
     EXPECT_GE(held(cuts), 1u);
     EXPECT_LT(held(cuts), 20u);
+}
+
+TEST_F(CutChoice, WhatNoEngineNeedsIsNotChosenAndLeavesItsRoomToTheView) {
+    CutChooser chooser;
+    const CutSet all = chooser.choose(purpose(), room(100));
+    needs = {};
+    const CutSet view = chooser.choose(purpose(), room(100));
+    EXPECT_EQ(view.light.points, 0u);
+    EXPECT_TRUE(view.light.nodes.empty());
+    EXPECT_TRUE(view.light_views.empty());
+    EXPECT_GT(view.view.points, all.view.points);
+    needs = {.light_cut = true};
+    const CutSet light = chooser.choose(purpose(), room(100));
+    EXPECT_GT(light.light.points, 0u);
+    EXPECT_TRUE(light.light_views.empty());
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST_F(Worker, MotionDoesNotWaitForAPictureAtRest) {
     worker_->request(request_);
     PictureRequest motion = request_;
     motion.moving = motion.frame.moving = motion.frame.stand_in = true;
-    motion.frame.light_seconds = 0;
+    motion.frame.light_budget = gi::StepBudget::timed(0);
     for (int i = 0; i < 3; ++i) {
         motion.frame.camera.target.z += 1e-3;
         const auto picture = whole(worker_->request(motion));

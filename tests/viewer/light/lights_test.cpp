@@ -31,7 +31,7 @@ struct LitView {
     Lighting lighting() { return {view, lights}; }
 };
 
-TEST(LightEdits, AddCopyDeleteAndUndoLeadBackStepByStep) {
+TEST(LightEdits, AddCopyAndDelete) {
     LitView model;
     add_light(model.lighting(), gi::LightKind::spot);
     ASSERT_EQ(model.view.scene.lights.size(), 1u);
@@ -43,16 +43,27 @@ TEST(LightEdits, AddCopyDeleteAndUndoLeadBackStepByStep) {
     EXPECT_NE(model.view.scene.lights[1].position, model.view.scene.lights[0].position);
     remove_light(model.lighting());
     EXPECT_EQ(model.view.scene.lights, one);
-    undo_lights(model.lighting());
-    EXPECT_EQ(model.view.scene.lights.size(), 2u);
-    undo_lights(model.lighting());
-    EXPECT_EQ(model.view.scene.lights, one);
-    undo_lights(model.lighting());
+    remove_light(model.lighting());
     EXPECT_TRUE(model.view.scene.lights.empty());
-    undo_lights(model.lighting());
     remove_light(model.lighting());
     switch_selected_light(model.lighting());
     EXPECT_TRUE(model.view.scene.lights.empty());
+}
+
+TEST(LightEdits, TheHourThatWasChosenStaysWhenTheLightIsMadeAnew) {
+    LitView model;
+    model.view.site.outline = {dvec3(0), dvec3(10)};
+    model.view.site.box = {dvec3(0), dvec3(10)};
+    take_mood(model.lighting(), Mood::daylight);
+    EXPECT_FALSE(model.view.scene.lights.front().sun);
+    gi::SunMoment moment;
+    moment.latitude = 10;
+    set_daytime(model.view.scene, moment);
+    const auto chosen = model.view.scene.lights;
+    light_for_place(model.lighting());
+    ASSERT_TRUE(model.view.scene.lights.front().sun);
+    EXPECT_EQ(model.view.scene.lights.front().sun->latitude, 10);
+    EXPECT_EQ(model.view.scene.lights.front().strength, chosen.front().strength);
 }
 
 TEST(LightEdits, ASceneHoldsNoMoreLightsThanItsFileMay) {

@@ -5,6 +5,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "gi/scene/photometry.h"
+#include "gi/scene/scene_lights.h"
+#include "viewer/opening/clear_day.h"
 #include "viewer/opening/first_view.h"
 #include "viewer/opening/moods.h"
 #include "viewer/opening/occupancy.h"
@@ -164,6 +167,17 @@ TEST(FirstView, AllPointsFillTheFreePartOfThePicture) {
     }
 }
 
+TEST(FirstView, RoomsAreLookedIntoFromOutside) {
+    const Site site = room();
+    EXPECT_TRUE(looks_in_from_outside(site, outside_view(site, {})));
+    EXPECT_FALSE(looks_in_from_outside(site, inside_view(site, {})));
+    gi::SceneCamera plan = inside_view(site, {});
+    plan.orthographic_height = 5;
+    EXPECT_TRUE(looks_in_from_outside(site, plan)) << "a plan shows no ceilings";
+    const Site hills = survey_site(terrain(20000), {dvec3(0, 0, -20), dvec3(400, 400, 20)}, 1);
+    EXPECT_FALSE(looks_in_from_outside(hills, outside_view(hills, {})));
+}
+
 TEST(FirstView, ParallelPicturesFitAsWell) {
     const std::vector<dvec3> corners = {dvec3(0), dvec3(4, 2, 3)};
     const ViewAxes front{dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(0, 1, 0)};
@@ -208,6 +222,77 @@ TEST(Moods, EveryMoodLightsEveryKindOfSite) {
     EXPECT_FALSE(find_mood("gloom"));
     EXPECT_EQ(usual_mood(sites[0]), Mood::evening);
     EXPECT_EQ(usual_mood(sites[1]), Mood::daylight);
+}
+
+TEST(Moods, RakingLightStandsBesideAWallAndGrazesIt) {
+    const Site site = room();
+    gi::Scene scene = gi::default_scene(site.box[0], site.box[1]);
+    set_mood(scene, Mood::raking_light, site, first_view(site, {}));
+    ASSERT_EQ(scene.lights.size(), 1u);
+    for (const gi::SceneLight& light : scene.lights) {
+        const dvec3 along = normalize(light.target - light.position);
+        bool grazes = false;  // a wall within 1.7 m, by less than 20 degrees
+        for (int axis = 0; axis < 2; ++axis)
+            for (int side = 0; side < 2; ++side) {
+                const double away = std::abs(light.position[axis] - kRoom[side][axis]);
+                EXPECT_GT(away, .1);
+                grazes |= away < 1.7 && std::abs(along[axis]) < .35;
+            }
+        EXPECT_TRUE(grazes);
+        EXPECT_GT(length(light.target - light.position), 3) << "across most of the wall";
+    }
+}
+
+TEST(Moods, OnlyClayHidesTheScansColours) {
+    const Site site = room();
+    gi::Scene scene = gi::default_scene(site.box[0], site.box[1]);
+    set_mood(scene, Mood::clay, site, first_view(site, {}));
+    EXPECT_EQ(scene.look.colour, gi::ColourBy::clay);
+    for (const Mood next : {Mood::scan_colours, Mood::evening}) {
+        scene.look.colour = gi::ColourBy::clay;
+        set_mood(scene, next, site, first_view(site, {}));
+        EXPECT_EQ(scene.look.colour, gi::ColourBy::colour);
+    }
+    scene.look.colour = gi::ColourBy::elevation;
+    set_mood(scene, Mood::museum, site, first_view(site, {}));
+    EXPECT_EQ(scene.look.colour, gi::ColourBy::elevation) << "what the user has chosen stays";
+}
+
+TEST(Moods, TheHourMovesAndReddensTheSun) {
+    const Site site = survey_site(terrain(20000), {dvec3(0, 0, -20), dvec3(400, 400, 20)}, 1);
+    gi::Scene scene = gi::default_scene(site.box[0], site.box[1]);
+    set_mood(scene, Mood::daylight, site, first_view(site, {}));
+    gi::SunMoment moment;
+    const auto at = [&](int hour) {
+        gi::LocalTime time = gi::local_time(moment.time);
+        time.seconds = hour * 3600;
+        moment.time = gi::moment_of(time, moment.time.ahead);
+        set_daytime(scene, moment);
+        return scene.lights.front();
+    };
+    const gi::SceneLight noon = at(13), evening = at(20);
+    EXPECT_GT(normalize(noon.position - noon.target).z, .9) << "Vienna at midsummer";
+    EXPECT_LT(normalize(evening.position - evening.target).z, .2);
+    EXPECT_GT(evening.strength.x / evening.strength.z, 1.5 * noon.strength.x / noon.strength.z);
+    const dvec3 dusk_sky = scene.environment->scale;
+    EXPECT_FALSE(shines(at(0))) << "midnight";
+    EXPECT_GT(scene.environment->scale.z, 0) << "some light is left";
+    EXPECT_LT(scene.environment->scale.z, .01 * dusk_sky.z);
+    EXPECT_EQ(at(13), noon) << "the way does not matter";
+}
+
+TEST(ClearDay, HasTheStatedStrengthAndNoSteps) {
+    EXPECT_NEAR(gi::luminance(clear_day(42).sun), 850, 1e-9);
+    EXPECT_EQ(clear_day(-1).sun, dvec3(0));
+    ClearDay before = clear_day(-20);
+    for (double elevation = -19.9; elevation <= 90; elevation += .1) {
+        const ClearDay day = clear_day(elevation);
+        EXPECT_GE(gi::luminance(day.sky), gi::luminance(before.sky)) << elevation;
+        EXPECT_LE(gi::luminance(day.sky), 1.1 * gi::luminance(before.sky)) << elevation;
+        EXPECT_GE(day.sun.z, before.sun.z) << elevation;
+        EXPECT_LE(day.dusk, before.dusk) << elevation;
+        before = day;
+    }
 }
 
 }  // namespace

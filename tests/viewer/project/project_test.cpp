@@ -4,10 +4,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "io/files/json.h"
 #include "tests/temporary_folder.h"
 #include "viewer/measure/file.h"
+#include "viewer/project/lock.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -16,7 +18,7 @@ using testing::HasSubstr;
 
 Project work() {
     Project project;
-    project.scans = {"/scans/a.las", "/scans/b.las"};
+    project.scans = {{"/scans/a.las", "/scans/b.las"}, {"/scans/c.las"}};
     auto scene = gi::parse_scene(R"({
         "cameras": [{"name": "view", "position": [1.1, 2.2, 3.3], "target": [0, 0, 0]}],
         "lights": [{"type": "spot", "position": [0, 0, 5], "target": [0, 0, 0], "intensity": [1, 2, 3], "angle": 40}],
@@ -93,7 +95,9 @@ TEST_F(ProjectFile, ThatIsDamagedIsPutAsideAndNeverCrashes) {
     }
     for (const char* bad : {"[]", "{}", R"({"version": 1})", R"({"version": 1, "scene": {}})",
                             R"({"version": 1, "scene": [], "mood": 3})", R"({"version": "1", "scene": {}})",
-                            R"({"version": 1, "scene": {"lights": 7}})"}) {
+                            R"({"version": 1, "scene": {"lights": 7}})",
+                            R"({"version": 1, "scene": {"cameras": [{}]}, "scans": [7]})",
+                            R"({"version": 1, "scene": {"cameras": [{}]}, "scans": [[]]})"}) {
         write(bad);
         EXPECT_FALSE(load_project(file_, 1).project) << bad;
     }
@@ -107,6 +111,68 @@ TEST_F(ProjectFile, OfANewerProgramStaysAsItIs) {
     EXPECT_FALSE(loaded.may_write);
     EXPECT_THAT(loaded.problem, HasSubstr("newer"));
     EXPECT_EQ(load_text(file_).value(), text);
+}
+
+TEST_F(ProjectFile, WithAMillionNestedArraysIsRefused) {
+    const std::string deep(1'000'000, '[');
+    for (const std::string& text :
+         {deep + std::string(deep.size(), ']'), deep,
+          R"({"version": 1, "scene": )" + deep + std::string(deep.size(), ']') + "}"}) {
+        const auto project = parse_project(text, "deep.json", folder_.path(), std::nullopt);
+        ASSERT_FALSE(project);
+        EXPECT_THAT(project.error().line(), HasSubstr("nested"));
+    }
+}
+
+TEST_F(ProjectFile, OfTheUserStaysAsItIsWhateverItHolds) {
+    for (const char* text : {"\xff\xfe", R"({"version": 1, "scene": 3})", R"({"version": 9})"}) {
+        write(text);
+        const auto project = read_project(file_, std::nullopt);
+        ASSERT_FALSE(project) << text;
+        EXPECT_THAT(project.error().line(), HasSubstr("p.json"));
+        EXPECT_EQ(load_text(file_).value(), text);
+    }
+}
+
+TEST_F(ProjectFile, IsToldFromAScene) {
+    write(project_text(work(), 1, folder_.path()));
+    EXPECT_TRUE(is_project(file_));
+    write(gi::write_scene(work().scene));
+    EXPECT_FALSE(is_project(file_));
+    write("[]");
+    EXPECT_FALSE(is_project(file_));
+    EXPECT_FALSE(is_project(folder_ / "none.json"));
+}
+
+TEST_F(ProjectFile, FindsItsScansWhereTheyWereOrBesideIt) {
+    std::ofstream(folder_ / "moved.las") << "scan";
+    std::filesystem::create_directory(folder_ / "old");
+    std::ofstream(folder_ / "old/there.las") << "scan";
+    std::ofstream(folder_ / "there.las") << "another scan";
+    const std::string there = folder_ / "old/there.las";
+    const auto scans = find_scans({{there, "/nowhere/moved.las"}, {"/nowhere/gone.las"}, {"/", "moved.las"}},
+                                  folder_.path());
+    const std::string moved = folder_ / "moved.las";
+    EXPECT_EQ(scans.found, (ScanGroups{{there, moved}, {"/", moved}}));
+    EXPECT_EQ(scans.missing, (std::vector<std::string>{"/nowhere/gone.las"}));
+    EXPECT_THAT(missing_text("p.json", scans.missing),
+                HasSubstr("p.json: scans not found: /nowhere/gone.las;"));
+    EXPECT_THAT(missing_text("p.json", {"a", "b", "c", "d", "e"}), HasSubstr("a, b, c and 2 more"));
+    EXPECT_EQ(missing_text("p.json", {}), "");
+}
+
+TEST_F(ProjectFile, IsLockedByOneAtATime) {
+    ProjectLock first, second;
+    EXPECT_EQ(first.take(file_), "");
+    EXPECT_THAT(second.take(file_), HasSubstr("process " + std::to_string(getpid()) + " on "));
+    first.release();
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "p.json.lock"));
+    EXPECT_EQ(second.take(file_), "");
+    ProjectLock third = std::move(second);
+    EXPECT_NE(first.take(file_), "");
+    std::ofstream(folder_ / "q.json.lock") << "left by a process that has ended";
+    EXPECT_EQ(first.take(folder_ / "q.json"), "") << "nobody holds it";
+    EXPECT_EQ(first.take(folder_ / "none/p.json"), "") << "there can be no lock";
 }
 
 TEST_F(ProjectFile, EachScanHasItsOwn) {

@@ -154,14 +154,15 @@ TEST(PathEditor, SavesWhatItLoadedByteForByteAndOverwritesNothing) {
     EXPECT_EQ(editor.path().keys.size(), 2u) << "what was there stays";
 }
 
-TEST(PathEditor, UndoesAndHoldsASelectionThatIsThere) {
+TEST(PathEditor, RestoresPathsAndHoldsASelectionThatIsThere) {
     PathEditor editor = with_keys(3);
     const std::string before = path_text(editor.path());
+    const PathEditor::State state = editor.state();
     ASSERT_TRUE(editor.remove());
     EXPECT_EQ(editor.selected(), 1u);
-    editor.undo();
+    editor.become(state);
     EXPECT_EQ(path_text(editor.path()), before);
-    while (editor.can_undo()) editor.undo();
+    editor.become(PathEditor().state());
     EXPECT_TRUE(editor.empty());
     EXPECT_EQ(editor.selected(), std::nullopt);
     editor.select(4);

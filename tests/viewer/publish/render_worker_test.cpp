@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/program.h"
+#include "tests/viewer/window/picture_difference.h"
 #include "viewer/inputs/input.h"
 
 namespace lucarne::viewer {
@@ -82,6 +83,34 @@ TEST_F(Rendering, SavesWhatTheCommandRenders) {
                                    " -o " + (folder_ / "command.png"));
     ASSERT_EQ(ran.code, 0) << ran.output;
     EXPECT_EQ(test::bytes_of(folder_ / "window.png"), test::bytes_of(folder_ / "command.png"));
+}
+
+TEST_F(Rendering, RoomsAreOpenFromOutsideInPicturesAndFlights) {
+    order_.site.kind = SiteKind::interior;
+    order_.site.box = {order_.source->header().min, order_.source->header().max};
+    gi::SceneCamera& camera = order_.scene.cameras.front();
+    camera.target = (order_.site.box[0] + order_.site.box[1]) / 2.0;
+    camera.position = camera.target - glm::dvec3(3 * (camera.target.x - order_.site.box[0].x), 0, 0);
+    ASSERT_TRUE(gi::save_scene(order_.scene, folder_ / "outside.json", false));
+    const std::string render = "render " + cache_ + " --engine direct --size 64x48 --scene " +
+                               (folder_ / "outside.json") + " -o " + folder_.path().string();
+    ASSERT_EQ(test::lucarne(render + "/closed.png").code, 0);
+    ASSERT_EQ(test::lucarne(render + "/open.png --front-only").code, 0);
+    const auto open = test::bytes_of(folder_ / "open.png");
+    EXPECT_NE(open, test::bytes_of(folder_ / "closed.png"));
+    order_.what = still("window.png");
+    ASSERT_TRUE(start());
+    ASSERT_TRUE(outcome());
+    EXPECT_EQ(test::bytes_of(folder_ / "window.png"), open);
+    FlightOrder along = flight(0.1);
+    along.path.keys.back().camera = camera;
+    order_.what = along;
+    ASSERT_TRUE(start());
+    ASSERT_TRUE(outcome());
+    const auto in_flight = io::read_png(folder_ / "frames/frame_00001.png"),
+               seen = io::read_png(folder_ / "open.png"), closed = io::read_png(folder_ / "closed.png");
+    ASSERT_TRUE(in_flight && seen && closed);
+    EXPECT_LT(test::difference(*in_flight, *seen), test::difference(*in_flight, *closed) / 4);
 }
 
 TEST_F(Rendering, OverwritesNothingAndSaysWhatCannotBeMade) {

@@ -19,6 +19,7 @@ TEST(Actions, EachHasAKeyOfItsOwnAPlaceInAMenuAndAName) {
             if (&other == &action) continue;
             EXPECT_NE(other.chord, action.chord)
                 << key_text(action.chord) << ": " << action.name << " and " << other.name;
+            EXPECT_NE(other.chord, action.other) << action.name << " and " << other.name;
             EXPECT_FALSE(std::string(other.name) == action.name && std::string(other.menu) == action.menu)
                 << action.name;
         }
@@ -93,7 +94,7 @@ TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::directional) << "a low sun";
     run("Go inside");
     ASSERT_EQ(model.view.scene.lights.size(), 1u);
-    EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::point) << "a lamp";
+    EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::disc) << "a lamp";
     EXPECT_TRUE(model.view.inside());
     model.lights.mood.reset();  // as when a light is changed
     model.view.scene.lights[0].position.z = 1;

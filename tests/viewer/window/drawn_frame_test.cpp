@@ -1,7 +1,8 @@
 #include "viewer/window/drawn_frame.h"
 
 #include <gtest/gtest.h>
-#include <imgui.h>
+
+#include "tests/viewer/window/imgui_context.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -10,31 +11,25 @@ namespace {
 class DrawnFrame : public testing::Test {
  protected:
     DrawnFrame() {
-        ImGui::CreateContext();
-        ImGui::GetIO().IniFilename = nullptr;
-        unsigned char* pixels = nullptr;
-        int width = 0, height = 0;
-        ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
         for (int i = 0; i < 3; ++i)
             of("a", {100, 100});  // the layout of new windows takes more than one frame
     }
-    ~DrawnFrame() override { ImGui::DestroyContext(); }
 
     uint64_t of(const char* text, const ImVec2& mouse, bool dot = false) {
-        ImGui::GetIO().DisplaySize = {640, 480};
-        ImGui::GetIO().DeltaTime = 1.0f / 60;
-        ImGui::GetIO().MousePos = mouse;
-        ImGui::NewFrame();
-        ImGui::SetNextWindowPos({0, 0});
-        ImGui::SetNextWindowSize({200, 200});
-        ImGui::Begin("window");
-        ImGui::TextUnformatted(text);
-        ImGui::Button("button", {180, 60});
-        ImGui::End();
-        if (dot) ImGui::GetBackgroundDrawList()->AddCircleFilled({400, 400}, 3, IM_COL32_WHITE);
-        ImGui::Render();
+        imgui_.frame(mouse, false, [&] {
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({200, 200});
+            ImGui::Begin("window");
+            ImGui::TextUnformatted(text);
+            ImGui::Button("button", {180, 60});
+            ImGui::End();
+            if (dot) ImGui::GetBackgroundDrawList()->AddCircleFilled({400, 400}, 3, IM_COL32_WHITE);
+        });
         return fingerprint(*ImGui::GetDrawData());
     }
+
+ private:
+    test::ImguiContext imgui_{{640, 480}};
 };
 
 TEST_F(DrawnFrame, HasTheSameNumberWhereItLooksTheSame) {

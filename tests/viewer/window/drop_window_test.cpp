@@ -63,6 +63,41 @@ TEST_F(DroppedFiles, ThatAreScenesAreShown) {
     EXPECT_THAT(log(), HasSubstr("broken.json"));
 }
 
+TEST_F(DroppedFiles, ThatAreProjectsReplaceWhatIsOpen) {
+    const std::string second = folder_ / "second.las", project = folder_ / "rooms.json",
+                      newer = folder_ / "newer.json", lost = folder_ / "lost.json";
+    ASSERT_EQ(lucarne("generate two-rooms --points 20k -o " + second).code, 0);
+    const std::string scene = R"("scene": {"cameras": [{"name": "view", "position": [2, 2, 12],
+        "target": [2, 2, 0], "up": [0, 1, 0]}], "render": {"engine": "direct"},
+        "lights": [{"type": "point", "position": [2, 2, 11], "intensity": [90, 90, 90]}]})";
+    std::ofstream(project) << R"({"version": 1, "scans": ["/nowhere/second.las", "/nowhere/gone.las"], )"
+                           << scene << "}";
+    std::ofstream(newer) << R"({"version": 2, "scans": 7})";
+    std::ofstream(lost) << R"({"version": 1, "scans": ["/nowhere/lost.las"], )" << scene << "}";
+    start();
+    const auto before = picture(lit);
+    ASSERT_TRUE(before) << log();
+    ASSERT_EQ(drop(uri(newer)).code, 0);
+    EXPECT_TRUE(
+        eventually([&] { return log().find("newer.json: version 2 is newer") != std::string::npos; }));
+    ASSERT_EQ(drop(uri(lost)).code, 0);
+    EXPECT_TRUE(eventually([&] {
+        return log().find("lost.json: none of its scans was found") != std::string::npos;
+    })) << log();
+    EXPECT_TRUE(title_comes("cornell.luc")) << "what was open stays";
+    ASSERT_EQ(drop(uri(project)).code, 0);
+    EXPECT_TRUE(title_comes("second.las")) << log();
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *before) > 2; })) << log();
+    EXPECT_THAT(log(), HasSubstr("rooms.json: scans not found: /nowhere/gone.las"));
+    xdo("key Insert sleep 0.5 key alt+F4");
+    EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
+    const std::string kept = bytes_of(project);
+    for (const std::string& part : {second, std::string("/nowhere/gone.las"), std::string("\"flythrough\"")})
+        EXPECT_THAT(kept, HasSubstr(part));
+    EXPECT_EQ(bytes_of(newer), R"({"version": 2, "scans": 7})");
+    EXPECT_THAT(bytes_of(folder_ / "config/settings.json"), HasSubstr(project));
+}
+
 TEST_F(DroppedFiles, OpenAsScansAndTheOneThatIsNoneIsNamed) {
     const std::string greeting = folder_ / "Gr\u00fc\u00dfe, 100%.las", second = folder_ / "second.las",
                       letter = folder_ / "letter.pdf";

@@ -203,6 +203,27 @@ TEST(FileBrowser, ListsFoldersFirstThenScansAndHidesTheRest) {
     EXPECT_THAT(browser.chosen(), ElementsAre(folder / "a.luc"));
 }
 
+TEST(FileBrowser, TakesTypedPaths) {
+    const TemporaryFolder folder;
+    write(folder / "a.luc", "12345");
+    std::filesystem::create_directory(folder / "z");
+    FileBrowser browser;
+    browser.open(folder.path());
+    EXPECT_EQ(browser.enter("a.luc"), folder / "a.luc");
+    EXPECT_EQ(browser.enter("z"), std::nullopt);
+    EXPECT_EQ(browser.folder(), folder / "z");
+    EXPECT_EQ(browser.enter(folder / "a.luc"), folder / "a.luc");
+    EXPECT_EQ(browser.enter("nothing"), std::nullopt);
+    EXPECT_NE(browser.problem().find("nothing"), std::string::npos);
+    EXPECT_EQ(browser.folder(), folder / "z") << "stays";
+    EXPECT_EQ(browser.enter(".."), std::nullopt);
+    EXPECT_EQ(browser.problem(), "");
+    EXPECT_EQ(browser.folder(), folder.path());
+    ASSERT_NE(std::getenv("HOME"), nullptr);
+    EXPECT_EQ(browser.enter("~"), std::nullopt);
+    EXPECT_EQ(browser.folder(), std::filesystem::path(std::getenv("HOME")));
+}
+
 /// A set of scans, with functions that wait for it.
 class OpenScans : public testing::Test {
  protected:

@@ -85,12 +85,15 @@ TEST_F(UnsavedWork, IsNoneOnceItIsSavedAndUntilTheNextChange) {
 }
 
 TEST_F(UnsavedWork, IsNoneWhereEveryChangeWasTakenBack) {
-    change_everything();
-    model_.measure.undo();
-    model_.publish.editor.undo();
-    undo_lights(model_.lighting());
+    model_.history.follow(model_);
+    ASSERT_TRUE(model_.measure.list.add(distance(2)));
+    model_.history.follow(model_);
+    model_.publish.add_key(camera_at(1));
+    model_.history.follow(model_);
+    add_light(model_.lighting(), gi::LightKind::point);
+    for (int i = 0; i < 3; ++i) model_.history.undo(model_);
     EXPECT_THAT(named(), ElementsAre());
-    model_.measure.redo();
+    model_.history.redo(model_);
     EXPECT_THAT(named(), ElementsAre("1 measurement -> measurements.json"));
 }
 

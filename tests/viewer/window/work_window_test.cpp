@@ -63,6 +63,102 @@ TEST_F(WindowWithProject, IsFoundAgainTheNextDay) {
         << "a command line that says what to show is obeyed";
 }
 
+TEST_F(WindowWithProject, StepsBackThroughAllFeaturesInTheOrderOfTheirChanges) {
+    start();
+    const auto whole = picture(lit);
+    ASSERT_TRUE(whole) << log();
+    xdo("key i sleep 0.5");  // a clip box
+    const auto clipped = picture([&](const io::Image8& now) { return difference(now, *whole) > 2; });
+    ASSERT_TRUE(clipped) << log();
+    xdo("key Insert sleep 0.5 key ctrl+z sleep 0.5 key ctrl+z");  // a key frame, which goes first
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *whole, *clipped); })) << log();
+    xdo("key ctrl+shift+z");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *clipped, *whole); })) << log();
+    close();
+    EXPECT_THAT(bytes_of(project()), Not(HasSubstr("\"flythrough\"")));
+}
+
+TEST_F(WindowWithProject, IsSavedUnderANameAndFindsScansThatWereMovedWithIt) {
+    const std::string file = folder_ / "cornell-project.json", moved = folder_ / "moved";
+    start();
+    const auto home = picture(lit);
+    ASSERT_TRUE(home) << log();
+    xdo("key 5");
+    const auto above = picture([&](const io::Image8& now) { return difference(now, *home) > 2; });
+    ASSERT_TRUE(above) << log();
+    xdo("key ctrl+shift+s sleep 1 key Return");
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file); })) << log();
+    xdo("sleep 0.5 key i sleep 0.5");  // a clip box, kept in the same file
+    close();
+    EXPECT_THAT(bytes_of(file), HasSubstr("\"clip\""));
+    EXPECT_THAT(bytes_of(folder_ / "config/settings.json"), HasSubstr(file));
+
+    std::filesystem::create_directory(moved);
+    std::filesystem::rename(cache_, moved + "/cornell.luc");
+    std::filesystem::rename(file, moved + "/p.json");
+    std::filesystem::remove_all(folder_ / "config/projects");
+    start_with(moved + "/p.json");
+    const auto clipped = picture([&](const io::Image8& now) { return difference(now, *above) > 2; });
+    ASSERT_TRUE(clipped) << log();
+    xdo("key alt+i");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *above, *home); })) << log();
+    close();
+    EXPECT_THAT(bytes_of(moved + "/p.json"), HasSubstr(moved + "/cornell.luc")) << "their new place";
+    EXPECT_TRUE(project().empty()) << "its own file is enough";
+
+    const Outcome two = lucarne("view " + moved + "/p.json " + moved + "/cornell.luc");
+    EXPECT_EQ(two.code, 2) << two.output;
+    std::filesystem::remove(moved + "/cornell.luc");
+    const Outcome gone = lucarne("view " + moved + "/p.json");
+    EXPECT_EQ(gone.code, 3) << gone.output;
+    EXPECT_THAT(gone.output, HasSubstr("p.json: none of its scans was found"));
+}
+
+TEST_F(WindowWithProject, ExportsThePointsThatItShows) {
+    const std::string file = folder_ / "cornell-part.laz";
+    start();
+    const auto whole = picture(lit);
+    ASSERT_TRUE(whole) << log();
+    xdo("key ctrl+shift+e sleep 1 key Return");
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file); })) << log();
+    const auto all = std::filesystem::file_size(file);
+    xdo("key i");  // a clip box
+    ASSERT_TRUE(picture([&](const io::Image8& now) { return difference(now, *whole) > 2; })) << log();
+    xdo("key ctrl+shift+e sleep 1 key Return sleep 1");
+    EXPECT_EQ(std::filesystem::file_size(file), all) << "it asks before it replaces a file";
+    xdo("key Return");
+    EXPECT_TRUE(eventually([&] { return std::filesystem::file_size(file) < all; })) << log();
+    EXPECT_THAT(log(), HasSubstr("exported "));
+    close();
+}
+
+TEST_F(WindowWithProject, OfAnotherWindowIsShownAndLeftAlone) {
+    const Background first(screen_->environment() + " " LUCARNE_BINARY " view " + cache_ + " 2>>" +
+                           (folder_ / "log"));
+    ASSERT_TRUE(eventually([&] { return log().find("first picture after") != std::string::npos; })) << log();
+    xdo("sleep 1 key Insert");  // a key frame, which is saved after three seconds
+    ASSERT_TRUE(eventually([&] { return !project().empty(); })) << log();
+    const std::filesystem::path file = project();
+    start();
+    ASSERT_TRUE(eventually([&] {
+        return log().find("open in another window (process") != std::string::npos;
+    })) << log();
+    EXPECT_THAT(log(), HasSubstr("your work on this scan is shown again"));
+    const std::string before = bytes_of(file);
+    xdo("sleep 1 key Insert sleep 5 key ctrl+shift+s sleep 1 key Return");
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "cornell-project.json"); }))
+        << log();
+    close();
+    EXPECT_EQ(bytes_of(file), before) << "the first window's";
+    const auto frames = [](const std::string& text) {
+        size_t count = 0;
+        for (size_t at = text.find("\"time\""); at != text.npos; at = text.find("\"time\"", at + 1)) ++count;
+        return count;
+    };
+    EXPECT_EQ(frames(before), 1u);
+    EXPECT_EQ(frames(bytes_of(folder_ / "cornell-project.json")), 2u);
+}
+
 TEST_F(WindowWithProject, ThatCannotBeWrittenIsAskedFor) {
     std::filesystem::create_directories(folder_ / "config");
     std::ofstream(folder_ / "config/projects") << "a file where the folder should be";

@@ -65,7 +65,8 @@ void add_look_options(Arguments& command, LookOptions& options) {
     };
     command
         .add("--colour,--color", options.colour,
-             "What the points' colours show: " + names(gi::colour_names()) + ":NAME")
+             "What the points' colours show: " + names(gi::colour_names()) +
+                 "; name an attribute as attribute:NAME")
         .type_name("WHAT");
     command.add("--colour-map,--color-map", options.map, names(gi::colour_map_names())).type_name("NAME");
     command.flag("--reverse-map", options.reversed, "Reverse the colour map");
@@ -91,6 +92,8 @@ void add_look_options(Arguments& command, LookOptions& options) {
         .type_name("N");
     command.flag("--single-discs", options.single_discs,
                  "Show in each pixel the nearest point's disc alone, not blended with those around it");
+    command.flag("--front-only", options.front_only,
+                 "Do not draw points that face away from the camera: look into rooms from outside");
     command.flag("--open-holes", options.open_holes,
                  "Leave holes of the scan open that the conversion has filled");
     command
@@ -120,6 +123,7 @@ Result<void> apply(const LookOptions& options, gi::Look& look) {
     }
     look.outliers = options.outliers.value_or(look.outliers);
     look.single_discs |= options.single_discs;
+    look.front_only |= options.front_only;
     look.open_holes |= options.open_holes;
     look.legend |= options.legend;
     look.axes |= options.axes;

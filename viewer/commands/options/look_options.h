@@ -18,8 +18,8 @@ struct LookOptions {
     ClipOptions clip;
     std::vector<int> hidden_classes;
     std::optional<uint32_t> outliers;
-    bool reversed = false, clip_casts = false, single_discs = false, open_holes = false, legend = false,
-         axes = false, scale_bar = false;
+    bool reversed = false, clip_casts = false, single_discs = false, front_only = false, open_holes = false,
+         legend = false, axes = false, scale_bar = false;
 };
 
 /// Declares --colour --colour-map --reverse-map --range --shading --shading-strength --point-size

@@ -8,6 +8,7 @@ namespace lucarne::viewer {
 std::vector<BoundAction> bound_actions(ViewModel& model) {
     std::vector<BoundAction> all;
     bind(file_actions(), std::ref(model), all);
+    bind(edit_actions(), std::ref(model), all);
     bind(view_actions(), std::ref(model), all);
     bind(bookmark_actions(), model.bookmarking(), all);
     bind(look_actions(), model.styling(), all);
@@ -22,7 +23,7 @@ std::vector<BoundAction> bound_actions(ViewModel& model) {
 void run_actions(std::span<const BoundAction> actions, std::span<const KeyChord> chords) {
     for (const KeyChord& chord : chords)
         for (const BoundAction& action : actions)
-            if (action.chord == chord && action.enabled()) action.run();
+            if ((action.chord == chord || action.other == chord) && action.enabled()) action.run();
 }
 
 std::span<const Gesture> gestures() {

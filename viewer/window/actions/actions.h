@@ -10,6 +10,7 @@ namespace lucarne::viewer {
 
 // The window's own actions, in the order of their menus. Each feature has others in its folder.
 std::span<const Action<ViewModel>> file_actions();
+std::span<const Action<ViewModel>> edit_actions();
 std::span<const Action<ViewModel>> view_actions();
 std::span<const Action<ViewModel>> window_actions();
 

@@ -41,6 +41,30 @@ bool is_stopped(const ViewModel& model) {
 void save_scene(ViewModel& model) {
     model.commands.push(SaveScene{});
 }
+/// Asks for a file. Proposes one beside the saved pictures, named after the first scan.
+void ask(ViewModel& model, FileQuestion& question, const char* ending) {
+    std::string& file = question.file;
+    if (file.empty()) {
+        const std::filesystem::path scan = model.scans->rows().front().paths.front();
+        std::error_code unknown;
+        file = std::filesystem::absolute(model.view.pictures / (scan.stem().string() + ending), unknown)
+                   .lexically_normal()
+                   .string();
+    }
+    question.ask();
+}
+void save_project(ViewModel& model) {
+    ask(model, model.project_name, "-project.json");
+}
+void export_points(ViewModel& model) {
+    ask(model, model.exporting.name, "-part.laz");
+}
+void cancel_export(ViewModel& model) {
+    model.exporting.cancel = true;
+}
+bool is_exporting(const ViewModel& model) {
+    return model.exporting.running;
+}
 void save_picture(ViewModel& model) {
     model.commands.push(SavePicture{});
 }
@@ -60,6 +84,21 @@ std::span<const Action<ViewModel>> file_actions() {
         Entry{{GLFW_KEY_PERIOD, GLFW_MOD_CONTROL}, "File", "Cancel loads and conversions", cancel, is_busy},
         Entry{{GLFW_KEY_COMMA, GLFW_MOD_CONTROL}, "File", "Resume conversions", go_on, is_stopped},
         Entry{{GLFW_KEY_S, GLFW_MOD_CONTROL}, "File", "Save scene", save_scene},
+        Entry{{GLFW_KEY_S, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT},
+              "File",
+              "Save project as...",
+              save_project,
+              has_scans},
+        Entry{{GLFW_KEY_E, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT},
+              "File",
+              "Export points...",
+              export_points,
+              has_scans},
+        Entry{{GLFW_KEY_E, GLFW_MOD_CONTROL | GLFW_MOD_ALT},
+              "File",
+              "Cancel export",
+              cancel_export,
+              is_exporting},
         Entry{{GLFW_KEY_F12}, "File", "Save the picture as PNG", save_picture, can_save_picture},
         Entry{{GLFW_KEY_Q, GLFW_MOD_CONTROL}, "File", "Quit", close},
     };

@@ -22,10 +22,15 @@ void go_home(ViewModel& model) {
 void fit(ViewModel& model) {
     model.view.rig.fit(model.view.box, picture_shape(model.view.side_bar));
 }
+/// The lights follow the camera through the door.
+void light_place(ViewModel& model) {
+    if (model.view.site.kind == SiteKind::interior) return;
+    model.history.without_step(model, [&] { light_for_place(model.lighting()); });
+}
 void go_inside(ViewModel& model) {
     model.view.entered = true;
     model.view.go_to(inside_view(model.view.site, picture_shape(model.view.side_bar)));
-    if (model.view.site.kind != SiteKind::interior) light_for_place(model.lighting());
+    light_place(model);
 }
 bool has_inside(const ViewModel& model) {
     return model.view.site.inside.has_value();
@@ -33,7 +38,7 @@ bool has_inside(const ViewModel& model) {
 void go_outside(ViewModel& model) {
     model.view.entered = false;
     model.view.go_to(outside_view(model.view.site, picture_shape(model.view.side_bar)));
-    if (model.view.site.kind != SiteKind::interior) light_for_place(model.lighting());
+    light_place(model);
 }
 bool has_picture(const ViewModel& model) {
     return model.view.picture != nullptr;

@@ -18,6 +18,12 @@ void toggle_help(ViewModel& model) {
 bool shows_help(const ViewModel& model) {
     return model.show_help;
 }
+void toggle_about(ViewModel& model) {
+    model.show_about = !model.show_about;
+}
+bool shows_about(const ViewModel& model) {
+    return model.show_about;
+}
 void toggle_side_bar(ViewModel& model) {
     model.view.side_bar.shown = !model.view.side_bar.shown;
 }
@@ -35,9 +41,6 @@ constexpr Entry section(KeyChord key, const char* name) {
 void reload_shaders(ViewModel& model) {
     ++model.health.shader_version;
     model.view.message = "shader files are read again";
-}
-bool has_shader_files(const ViewModel&) {
-    return std::getenv("LUCARNE_SHADERS") != nullptr;
 }
 
 constexpr double kTextStep = 1.1;
@@ -69,14 +72,12 @@ std::span<const Action<ViewModel>> window_actions() {
         section<BarSection::controller>({GLFW_KEY_F6}, "6-DoF controller"),
         Entry{{GLFW_KEY_EQUAL, GLFW_MOD_CONTROL}, "Window", "Larger text", larger_text},
         Entry{{GLFW_KEY_MINUS, GLFW_MOD_CONTROL}, "Window", "Smaller text", smaller_text},
-        Entry{{GLFW_KEY_F5, GLFW_MOD_CONTROL},
-              "Window",
-              "Read shader files again",
-              reload_shaders,
-              has_shader_files},
         Entry{{GLFW_KEY_F1}, "Help", "Keys and mouse", toggle_help, nullptr, shows_help},
+        Entry{{GLFW_KEY_F1, GLFW_MOD_SHIFT}, "Help", "About Lucarne", toggle_about, nullptr, shows_about},
+        // For those who write shaders: the last one, which others do not see.
+        Entry{{GLFW_KEY_F5, GLFW_MOD_CONTROL}, "Window", "Read shader files again", reload_shaders},
     };
-    return kActions;
+    return std::span(kActions).first(kActions.size() - (std::getenv("LUCARNE_SHADERS") ? 0 : 1));
 }
 
 }  // namespace lucarne::viewer

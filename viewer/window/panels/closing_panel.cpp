@@ -23,6 +23,7 @@ void list_unsaved(const std::vector<Unsaved>& all) {
 void list_running(const ViewModel& model) {
     if (model.publish.rendering.running)
         ImGui::Text("%s is not finished, and would be given up.", model.publish.rendering.file.c_str());
+    if (model.exporting.running) ImGui::TextUnformatted("The export is not finished, and would be given up.");
     if (model.scans && model.scans->converting())
         ImGui::TextUnformatted(
             "A scan is being converted. What is finished of it is kept: the conversion goes on from there "

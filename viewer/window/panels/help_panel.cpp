@@ -9,6 +9,20 @@
 namespace lucarne::viewer {
 namespace {
 
+void topic(std::string_view name) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::Spacing();
+    ImGui::TextDisabled("%.*s", static_cast<int>(name.size()), name.data());
+    ImGui::TableNextColumn();
+}
+
+/// The menu bar's title under which an action is.
+std::string_view title_of(const BoundAction& action) {
+    const std::string_view menu = action.menu;
+    return menu.substr(0, menu.find('/'));
+}
+
 void row(const char* key, const char* what) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(key);
@@ -36,11 +50,37 @@ void draw_help(bool& shown, std::span<const BoundAction> actions) {
         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
     if (ImGui::Begin("Keys and mouse", &shown, flags) &&
         ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+        topic("Mouse");
         for (const Gesture& gesture : gestures()) row(gesture.gesture, gesture.what);
-        for (const BoundAction& action : actions) row(key_text(action.chord).c_str(), action.name);
+        std::string_view last;
+        for (const BoundAction& action : actions) {
+            if (title_of(action) != last) topic(last = title_of(action));
+            std::string keys = key_text(action.chord);
+            if (action.other.key != 0) keys += ", " + key_text(action.other);
+            row(keys.c_str(), action.name);
+        }
         ImGui::EndTable();
     }
     ImGui::End();
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) shown = false;
+}
+
+void draw_about(bool& shown) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
+    if (ImGui::Begin("About Lucarne", &shown, flags)) {
+        ImGui::TextUnformatted("Lucarne " LUCARNE_VERSION);
+        ImGui::TextUnformatted("Point clouds of any size with global illumination.");
+        ImGui::TextUnformatted("Apache License 2.0; without warranty.");
+        ImGui::Spacing();
+        ImGui::TextUnformatted("Global illumination after Preiner 2010.");
+        ImGui::TextUnformatted(
+            "Uses GLFW, Dear ImGui, GLM, PCL, FLANN, PoCL, libusb and others; see README.md.");
+    }
+    ImGui::End();
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) shown = false;
 }
 
 void draw_message(const ViewModel& model, bool busy) {
@@ -52,7 +92,7 @@ void draw_message(const ViewModel& model, bool busy) {
                                    ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
                                    ImGuiWindowFlags_NoNav;
     const Health& health = model.health;
-    const std::array problems = {&health.device, &health.shaders, &health.nodes};
+    const std::array problems = {&health.device, &health.shaders, &health.picture, &health.nodes};
     const bool healthy = std::ranges::all_of(problems, [](const auto* problem) { return problem->empty(); });
     if (model.view.message.empty() && !busy && healthy) return;
     if (ImGui::Begin("##message", nullptr, flags)) {

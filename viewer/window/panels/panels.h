@@ -20,6 +20,7 @@ void draw_controller_panel(ViewModel& model);        ///< mapping of the 6-DoF c
 
 void draw_help(bool& shown, std::span<const BoundAction> actions);  ///< every action and gesture
 void draw_status_line(const ViewModel& model);                      ///< the point under the cursor
+void draw_about(bool& shown);                                       ///< name, version, licence
 void draw_message(const ViewModel& model, bool busy);               ///< one line at the bottom
 
 }  // namespace lucarne::viewer

@@ -18,7 +18,7 @@ struct SectionEntry {
 };
 /// In the order of `BarSection`.
 constexpr std::array<SectionEntry, kSections> kEntries = {{
-    {"Scans", [](ViewModel& model) { draw_scans_panel(*model.scans); }, false},
+    {"Scans", [](ViewModel& model) { draw_scans_panel(*model.scans, model.scan_commands); }, false},
     {"Rendering", [](ViewModel& model) { draw_rendering_panel(model.rendering()); }, true},
     {"Appearance", [](ViewModel& model) { draw_look_panel(model.styling()); }, true},
     {"Light", [](ViewModel& model) { draw_light_panel(model.lighting()); }, true},

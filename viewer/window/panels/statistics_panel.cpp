@@ -53,6 +53,11 @@ void draw_statistics_panel(const ViewModel& model) {
         if (stats.nodes_lost > 0)
             ImGui::Text("%llu nodes left out: they cannot be read",
                         static_cast<unsigned long long>(stats.nodes_lost));
+        if (!stats.not_prepared.empty())
+            ImGui::TextWrapped("Not computed in advance: %s", stats.not_prepared.c_str());
+        else if (stats.prepared)
+            ImGui::Text("Computed in advance: %.0f %%%s%s", *stats.prepared * 100,
+                        stats.preparing.empty() ? "" : ", now ", stats.preparing.c_str());
         ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
         ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
         ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),

@@ -16,7 +16,7 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr double kOneStep = 0, kNoStep = -1;  // Frame::light_seconds
+const StepBudget kOneStep = StepBudget::timed(0), kNoStep = StepBudget::paused();
 constexpr int kMostSteps = 200;
 
 double mean_luminance(const std::vector<glm::vec4>& radiance) {
@@ -51,12 +51,12 @@ class VplMotion : public OnDevice {
             .radiance;
     }
     std::vector<glm::vec4> at_once(Engine& engine) {
-        options_.light_seconds = std::numeric_limits<double>::infinity();
+        options_.light_budget = {};
         return picture(engine);
     }
-    std::vector<glm::vec4> in_motion(Engine& engine, double light_seconds) {
+    std::vector<glm::vec4> in_motion(Engine& engine, const StepBudget& light_budget) {
         options_.moving = true;
-        options_.light_seconds = light_seconds;
+        options_.light_budget = light_budget;
         return picture(engine);
     }
     /// Makes frames in motion until the engine has made all light. Returns the last.

@@ -1,4 +1,4 @@
-#include "viewer/frame/views.h"
+#include "gi/scene/views.h"
 
 #include <cmath>
 #include <set>
@@ -6,14 +6,11 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/engines/vpl/options.h"
-#include "viewer/frame/presets.h"
-
-namespace lucarne::viewer {
+namespace lucarne::gi {
 namespace {
 
-gi::SceneCamera camera(const glm::dvec3& position, const glm::dvec3& target) {
-    gi::SceneCamera c;
+SceneCamera camera(const glm::dvec3& position, const glm::dvec3& target) {
+    SceneCamera c;
     c.position = position;
     c.target = target;
     c.vertical_fov = 1.0;
@@ -21,7 +18,7 @@ gi::SceneCamera camera(const glm::dvec3& position, const glm::dvec3& target) {
 }
 
 /// Returns the ray of gi/shared/camera.h through a pixel's centre.
-glm::vec3 ray(const gi::CameraView& v, float x, float y) {
+glm::vec3 ray(const CameraView& v, float x, float y) {
     const auto part = [](const glm::vec4& a) { return glm::vec3(a.x, a.y, a.z); };
     return part(v.forward) + part(v.right) * (2 * (x + .5f) / static_cast<float>(v.width) - 1) -
            part(v.up) * (2 * (y + .5f) / static_cast<float>(v.height) - 1);
@@ -55,7 +52,7 @@ TEST(Views, LocalFrameKeepsProjectedCoordinatesExactInFloats) {
 }
 
 TEST(Views, SpotKeepsItsConeAndFadesOverItsSoftness) {
-    gi::SceneLight spot;
+    SceneLight spot;
     spot.position = {0, 0, 4};
     spot.target = {0, 0, 0};
     spot.angle = 1.0;
@@ -68,46 +65,27 @@ TEST(Views, SpotKeepsItsConeAndFadesOverItsSoftness) {
 
 TEST(Views, LightsComeInMetresWhateverTheUnitOfTheScan) {
     const LocalFrame feet{{10, 0, 0}, 0.3048};
-    gi::SceneLight lamp;
-    lamp.kind = gi::LightKind::rectangle;
+    SceneLight lamp;
+    lamp.kind = LightKind::rectangle;
     lamp.position = {20, 0, 10};
     lamp.target = {20, 0, 0};
     lamp.up = {0, 1, 0};
     lamp.width = 4;
     lamp.height = 2;
     const auto light = device_light(lamp, feet);
-    EXPECT_EQ(light.kind, gi::kRectangleLight);
+    EXPECT_EQ(light.kind, kRectangleLight);
     EXPECT_NEAR(light.position.x, 3.048f, 1e-6f);
     EXPECT_FLOAT_EQ(light.direction.z, -1);
     EXPECT_NEAR(std::abs(light.extent.x), 2 * .3048f, 1e-6f);  // half the width, across `up`
     EXPECT_NEAR(light.extent.y, 0, 1e-6f);
     EXPECT_NEAR(light.extent.w, .3048f, 1e-6f);
-    lamp.kind = gi::LightKind::disc;
+    lamp.kind = LightKind::disc;
     lamp.radius = 1;
     EXPECT_NEAR(device_light(lamp, feet).extent.w, .3048f, 1e-6f);
-    lamp.kind = gi::LightKind::directional;
+    lamp.kind = LightKind::directional;
     lamp.angular_radius = 0.01;
     EXPECT_FLOAT_EQ(device_light(lamp, feet).direction.w, 0.01f);
 }
 
-TEST(Presets, UnknownPresetIsABadArgumentThatListsTheKnownOnes) {
-    const auto preset = find_preset("best");
-    ASSERT_FALSE(preset);
-    EXPECT_EQ(preset.error().kind, ErrorKind::arguments);
-    for (const auto& known : presets()) EXPECT_NE(preset.error().line().find(known.name), std::string::npos);
-}
-
-TEST(Presets, EachCostsMoreThanTheOneBefore) {
-    std::set<std::string_view> names;
-    for (size_t i = 0; i < presets().size(); ++i) {
-        names.insert(presets()[i].name);
-        if (i == 0) continue;
-        EXPECT_GT(presets()[i].engine[gi::vpl::kVpls], presets()[i - 1].engine[gi::vpl::kVpls]);
-        EXPECT_GT(presets()[i].budgets.light, presets()[i - 1].budgets.light);
-    }
-    EXPECT_EQ(names.size(), presets().size());
-    EXPECT_TRUE(names.contains(kDefaultPreset));
-}
-
 }  // namespace
-}  // namespace lucarne::viewer
+}  // namespace lucarne::gi

@@ -10,7 +10,7 @@
 #include "octree/stream/cut.h"
 #include "octree/tree/source.h"
 
-namespace lucarne::viewer {
+namespace lucarne::gi {
 
 /// The origin of the device's coordinates: device = (world - origin) * metres_per_unit, in metres.
 struct LocalFrame {
@@ -27,21 +27,21 @@ struct LocalFrame {
 LocalFrame local_frame(const glm::dvec3& position, double metres_per_unit);
 
 /// Converts a scene's camera for engines.
-gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const LocalFrame& frame);
+CameraView camera_view(const SceneCamera& camera, ImageSize size, const LocalFrame& frame);
 /// Shifts the rays of a camera's view to where they pass through their pixels in a frame of an average, so
 /// that the average is that over the pixels' areas. Frame 0: the middles of the pixels.
-void shift_rays(gi::CameraView& view, uint32_t frame);
+void shift_rays(CameraView& view, uint32_t frame);
 /// Converts it for choosing nodes, in world units.
-octree::View octree_view(const gi::SceneCamera& camera, ImageSize size);
+octree::View octree_view(const SceneCamera& camera, ImageSize size);
 
 /// Converts a scene's light for engines.
-gi::Light device_light(const gi::SceneLight& light, const LocalFrame& frame);
+Light device_light(const SceneLight& light, const LocalFrame& frame);
 /// Returns a cut of what the light shines on, at most `budget` points: for spots and directional lights by a
 /// view of `resolution` texels along a side, for the others in all directions.
-octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLight& light, uint32_t resolution,
+octree::Cut light_view_cut(const octree::NodeSource& source, const SceneLight& light, uint32_t resolution,
                            uint64_t budget);
 
 /// Converts a material. `albedo` scales the albedo given by the points' colours.
-gi::Material device_material(const gi::SceneMaterial& material, double albedo = 1);
+Material device_material(const SceneMaterial& material, double albedo = 1);
 
-}  // namespace lucarne::viewer
+}  // namespace lucarne::gi

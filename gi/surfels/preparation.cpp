@@ -1,22 +1,22 @@
-#include "viewer/frame/prepare.h"
+#include "gi/surfels/preparation.h"
 
 #include <utility>
 #include <vector>
 
-namespace lucarne::viewer {
+namespace lucarne::gi {
 namespace {
 
 /// Returns the scene with materials for one part: boxes and scans in the part's own terms.
-gi::Scene scene_of_part(const gi::Scene& scene, const octree::SourcePart& part) {
-    gi::Scene own;
+Scene scene_of_part(const Scene& scene, const octree::SourcePart& part) {
+    Scene own;
     own.materials = scene.materials;
     own.look = scene.look;
     own.albedo = scene.albedo;
-    if (own.look.range && own.look.colour == gi::ColourBy::elevation) {
+    if (own.look.range && own.look.colour == ColourBy::elevation) {
         own.look.range->low /= part.scale;
         own.look.range->high /= part.scale;
     }
-    for (gi::SceneMaterial& material : own.materials) {
+    for (SceneMaterial& material : own.materials) {
         if (material.scan) *material.scan -= static_cast<int>(part.first_scan);
         if (material.box) {
             material.box->first /= part.scale;
@@ -28,12 +28,12 @@ gi::Scene scene_of_part(const gi::Scene& scene, const octree::SourcePart& part) 
 
 }  // namespace
 
-SurfelPreparation::SurfelPreparation(std::shared_ptr<const octree::NodeSource> source, const gi::Scene& scene)
+SurfelPreparation::SurfelPreparation(std::shared_ptr<const octree::NodeSource> source, const Scene& scene)
     : source_(std::move(source)) {
     set_scene(scene);
 }
 
-void SurfelPreparation::set_scene(const gi::Scene& scene, const gi::BakedLight* baked) {
+void SurfelPreparation::set_scene(const Scene& scene, const BakedLight* baked) {
     auto parts = std::make_shared<std::vector<OfPart>>();
     for (const uint32_t root : source_->roots()) {
         const octree::SourcePart part = source_->part_of(root);
@@ -54,15 +54,15 @@ PackedNode SurfelPreparation::pack(uint32_t node, const octree::NodeData& data) 
     const auto all = parts();
     const octree::SourcePart part = source_->part_of(node);
     const OfPart& own = (*all)[part.index];
-    return gi::pack_surfels(part.header, source_->nodes()[node], data, own.scene, part.first_scan,
-                            own.baked ? &*own.baked : nullptr);
+    return pack_surfels(part.header, source_->nodes()[node], data, own.scene, part.first_scan,
+                        own.baked ? &*own.baked : nullptr);
 }
 
 PackedNode SurfelPreparation::pack(const octree::Filling& filling, uint32_t node) const {
     const auto all = parts();
     const OfPart& own = (*all)[filling.part];
-    return gi::pack_surfels(filling.header, filling.nodes[node], filling.records[node], own.scene, 0,
-                            own.baked ? &*own.baked : nullptr);
+    return pack_surfels(filling.header, filling.nodes[node], filling.records[node], own.scene, 0,
+                        own.baked ? &*own.baked : nullptr);
 }
 
-}  // namespace lucarne::viewer
+}  // namespace lucarne::gi

@@ -1,4 +1,4 @@
-#include "viewer/frame/views.h"
+#include "gi/scene/views.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace lucarne::viewer {
+namespace lucarne::gi {
 namespace {
 
 constexpr double kOriginGrid = 256.0;  // m
@@ -54,7 +54,7 @@ LocalFrame local_frame(const glm::dvec3& position, double metres_per_unit) {
     return {glm::round(position / grid) * grid, metres_per_unit};
 }
 
-octree::View octree_view(const gi::SceneCamera& camera, ImageSize size) {
+octree::View octree_view(const SceneCamera& camera, ImageSize size) {
     const Axes axes = look_at(camera.position, camera.target, camera.up);
     const double tangent = std::tan(std::clamp(camera.vertical_fov, 1e-3, kWidestAngle) / 2);
     const double aspect = static_cast<double>(size.width) / size.height, height = camera.orthographic_height;
@@ -66,9 +66,9 @@ octree::View octree_view(const gi::SceneCamera& camera, ImageSize size) {
     return view;
 }
 
-gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const LocalFrame& frame) {
+CameraView camera_view(const SceneCamera& camera, ImageSize size, const LocalFrame& frame) {
     const octree::View view = octree_view(camera, size);
-    gi::CameraView result{};
+    CameraView result{};
     result.origin = glm::vec4(frame.to_local(camera.position), static_cast<float>(kNearPlane));
     result.forward = glm::vec4(glm::vec3(view.forward), 0.0f);
     // Half the height, or the tangent of half the angle.
@@ -78,13 +78,13 @@ gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const 
     result.right =
         glm::vec4(glm::vec3(view.right * (up * (static_cast<double>(size.width) / size.height))), 0.0f);
     result.up = glm::vec4(glm::vec3(view.up * up), 0.0f);
-    result.projection = parallel ? gi::kOrthographic : gi::kPerspective;
+    result.projection = parallel ? kOrthographic : kPerspective;
     result.width = size.width;
     result.height = size.height;
     return result;
 }
 
-void shift_rays(gi::CameraView& view, uint32_t frame) {
+void shift_rays(CameraView& view, uint32_t frame) {
     // Multiples of irrational numbers cover a pixel evenly after any number of frames (a Kronecker sequence).
     // Not the plastic number, by which lights are sampled (gi/lighting/light_samples.cpp), nor powers of two,
     // by which interleaved pixels and halves of paths alternate: the average would mix up the two.
@@ -94,50 +94,50 @@ void shift_rays(gi::CameraView& view, uint32_t frame) {
     view.up.w = static_cast<float>(at.y - 0.5);
 }
 
-gi::Light device_light(const gi::SceneLight& from, const LocalFrame& frame) {
+Light device_light(const SceneLight& from, const LocalFrame& frame) {
     const Axes axes = look_at(from.position, from.target, from.up);
     const auto length = [&](double v) { return static_cast<float>(v * frame.metres_per_unit); };
-    gi::Light light{};
+    Light light{};
     light.kind = static_cast<uint32_t>(from.kind);
     light.position = glm::vec4(frame.to_local(from.position), 0.0f);
     light.direction = glm::vec4(glm::vec3(axes.forward), 0.0f);
     light.strength = glm::vec4(glm::vec3(from.strength), 0.0f);
     switch (from.kind) {
-        case gi::LightKind::spot: {
+        case LightKind::spot: {
             const double half = std::clamp(from.angle, 1e-3, kWidestAngle) / 2;
             const double inner = half * (1 - std::clamp(from.softness, 0.0, 1.0));
             light.position.w = static_cast<float>(std::cos(half));
             light.direction.w = static_cast<float>(std::cos(inner));
             break;
         }
-        case gi::LightKind::directional:
+        case LightKind::directional:
             light.direction.w = static_cast<float>(std::clamp(from.angular_radius, 0.0, M_PI_2));
             break;
-        case gi::LightKind::rectangle: {
+        case LightKind::rectangle: {
             const glm::vec3 side(axes.right);
             light.extent = glm::vec4(side * length(from.width / 2), length(from.height / 2));
             break;
         }
-        case gi::LightKind::disc:
+        case LightKind::disc:
             light.extent.w = length(from.radius);
             break;
-        case gi::LightKind::point:
+        case LightKind::point:
             break;
     }
     return light;
 }
 
-octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLight& light, uint32_t resolution,
+octree::Cut light_view_cut(const octree::NodeSource& source, const SceneLight& light, uint32_t resolution,
                            uint64_t budget) {
     const Axes axes = look_at(light.position, light.target, {0, 0, 1});
     const auto& header = source.header();
     octree::View view;
     switch (light.kind) {
-        case gi::LightKind::spot:
+        case LightKind::spot:
             view = make_view(light.position, axes, std::tan(std::clamp(light.angle, 1e-3, kWidestAngle) / 2),
                              1.0);
             break;
-        case gi::LightKind::directional: {
+        case LightKind::directional: {
             // The view is so far away that its rays are nearly parallel.
             constexpr double kFarAway = 1e4;  // diagonals of the scan
             const double diagonal = std::max(glm::length(header.max - header.min), 1e-3);
@@ -152,12 +152,12 @@ octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLigh
     return octree::light_view_cut(source, view, budget);
 }
 
-gi::Material device_material(const gi::SceneMaterial& material, double albedo) {
-    gi::Material result{};
+Material device_material(const SceneMaterial& material, double albedo) {
+    Material result{};
     result.diffuse = glm::vec4(glm::vec3(material.diffuse * albedo), static_cast<float>(material.specular));
     const glm::vec3 emission(material.emits ? material.emission : glm::dvec3(0));
     result.emission = glm::vec4(emission, static_cast<float>(material.shininess));
     return result;
 }
 
-}  // namespace lucarne::viewer
+}  // namespace lucarne::gi

@@ -1,0 +1,143 @@
+#include "gi/bake/bake_job.h"
+
+#include <chrono>
+#include <utility>
+
+#include "gi/bake/bake_file.h"
+#include "io/core/guarded.h"
+#include "io/core/log.h"
+#include "io/core/process.h"
+#include "io/files/file.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr std::chrono::milliseconds kLook(50);          // between two looks at `stop`
+constexpr std::chrono::milliseconds kBetweenNews(500);  // of the finished share alone
+constexpr std::chrono::seconds kBetweenSaves(60);       // so that a crash loses little
+constexpr double kThousandths = 1000;
+
+}  // namespace
+
+BakeJob::BakeJob(BakeOrder order, std::function<void()> published)
+    : order_(std::move(order)), published_(std::move(published)) {
+    thread_ = std::thread([this] {
+        auto done = guarded(order_.engine->name, [this] { return compute(); });
+        {
+            const std::lock_guard lock(mutex_);
+            status_.error = std::move(done);
+            status_.ended = true;
+            status_.step.clear();
+        }
+        changed_.notify_all();
+        published_();
+    });
+}
+
+BakeJob::~BakeJob() {
+    stop_ = true;
+    thread_.join();
+}
+
+BakeJob::Status BakeJob::status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+}
+
+void BakeJob::wait(const std::atomic<bool>* stop, Progress* progress) const {
+    uint64_t shown = 0;
+    std::unique_lock lock(mutex_);
+    while (!status_.ended && !(stop && stop->load(std::memory_order_relaxed))) {
+        changed_.wait_for(lock, kLook);
+        const auto now = static_cast<uint64_t>(kThousandths * status_.share);
+        if (progress && now > shown) progress->add(now - std::exchange(shown, now));
+    }
+}
+
+/// Publishes what is usable after a step, before the step called `next`.
+void BakeJob::note(const Precomputation& work, std::string_view next) {
+    auto bake = work.snapshot();
+    bool news = false;
+    {
+        const std::lock_guard lock(mutex_);
+        status_.step = next;
+        status_.share = work.share();
+        news = bake != status_.bake;
+        if (news) ++status_.version;
+        status_.bake = std::move(bake);
+    }
+    changed_.notify_all();
+    const auto now = std::chrono::steady_clock::now();
+    if (!news && now - told_ < kBetweenNews) return;
+    told_ = now;
+    published_();
+}
+
+/// Returns work that continues from the kept file if that was made from the same input, else new work.
+std::unique_ptr<Precomputation> BakeJob::begin(uint64_t key) const {
+    const Precomputes& how = *order_.engine->precomputes;
+    auto work = how.make();
+    std::error_code unknown;
+    if (order_.file.empty() || !std::filesystem::exists(order_.file, unknown)) return work;
+    const auto restored = [&]() -> Result<void> {
+        LUCARNE_ASSIGN(const auto file, InputFile::open_shared(order_.file));
+        LUCARNE_ASSIGN(const BakeHeader header, read_bake_header(*file));
+        if (header.engine != order_.engine->name || header.version != how.version || header.key != key)
+            return rejected(order_.file.string(), "was computed from another scan, scene or options");
+        LUCARNE_ASSIGN(const BakeFile bake, read_bake(*file, order_.most_bytes));
+        return work->restore(order_.input, bake.sections);
+    }();
+    if (restored) return work;
+    log::info("{}; it is computed again", restored.error().line());
+    return how.make();  // the other one may have taken in a part
+}
+
+/// Writes the file. An unfinished result never replaces a finished one of another input.
+Result<void> BakeJob::keep(const Precomputation& work, uint64_t key) {
+    const double share = work.share();
+    if (order_.file.empty() || share <= 0) return {};
+    if (share < 1) {
+        std::error_code unknown;
+        if (std::filesystem::exists(order_.file, unknown)) {
+            const auto file = InputFile::open_shared(order_.file);
+            const auto kept = file ? read_bake_header(**file) : tl::make_unexpected(file.error());
+            if (kept && kept->share >= 1 && kept->key != key) return {};
+        }
+    }
+    return write_bake(
+        order_.file,
+        {{std::string(order_.engine->name), order_.engine->precomputes->version, key, share}, work.save()});
+}
+
+Result<void> BakeJob::compute() {
+    give_way();  // pictures come first
+    BakeInput& input = order_.input;
+    std::vector<octree::Filling> fillings;
+    if (order_.fill_holes) {
+        LUCARNE_ASSIGN(fillings, order_.source->fillings());
+    }
+    LUCARNE_ASSIGN(input.cut, load_host_cut(*order_.source, order_.cut, input.cut.frame, *order_.preparation,
+                                            order_.clip, fillings, &stop_));
+    const uint64_t key = bake_key(order_.engine->name, *order_.engine->precomputes, input);
+    const auto work = begin(key);
+    StepRunner<const BakeInput> runner;
+    if (work->share() < 1) runner.start(work->steps(input));
+    note(*work, runner.step());
+    const bool was_whole = !runner.running();
+    auto saved = std::chrono::steady_clock::now();
+    while (runner.running() && !stop_) {
+        LUCARNE_TRY(runner.run(input, StepBudget::timed(0), &stop_));
+        note(*work, runner.step());
+        if (std::chrono::steady_clock::now() - saved < kBetweenSaves) continue;
+        if (auto kept = keep(*work, key); !kept) log::warn("{}", kept.error().line());
+        saved = std::chrono::steady_clock::now();
+    }
+    if (!was_whole) {
+        auto kept = keep(*work, key);
+        const std::lock_guard lock(mutex_);
+        status_.keeping = std::move(kept);
+    }
+    return {};
+}
+
+}  // namespace lucarne::gi

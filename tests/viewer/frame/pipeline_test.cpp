@@ -1,0 +1,81 @@
+#include "viewer/frame/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/viewer/frame/with_cornell.h"
+
+namespace lucarne::viewer {
+namespace {
+
+/// Pictures of a small cache in which the camera sees one wall from close by.
+class PipelineTest : public test::WithCornell {
+ protected:
+    void SetUp() override {
+        WithCornell::SetUp();
+        if (HasFatalFailure()) return;
+        auto pipeline = Pipeline::open(*device_, source_, {});
+        ASSERT_TRUE(pipeline) << pipeline.error().line();
+        pipeline_ = std::move(*pipeline);
+        gi::Scene scene = pipeline_->scene();
+        scene.lights.resize(1);
+        const auto& header = source_->header();
+        scene.lights[0].position = (header.min + header.max) / 2.0;
+        ASSERT_TRUE(pipeline_->set_scene(scene));
+        CutBudgets budgets;
+        budgets.cap(20'000);
+        pipeline_->set_budgets(budgets);
+        request_.size = {96, 64};
+        request_.wait = true;
+        request_.camera.position = header.min + .9 * (header.max - header.min);
+        request_.camera.target = header.max;
+        request_.camera.vertical_fov = .5;
+    }
+    FrameStats frame(std::string_view engine) {
+        EXPECT_TRUE(pipeline_->set_engine(engine));
+        const auto stats = pipeline_->render(request_);
+        EXPECT_TRUE(stats) << stats.error().line();
+        return stats.value_or(FrameStats{});
+    }
+    std::unique_ptr<Pipeline> pipeline_;
+    FrameRequest request_;
+};
+
+TEST_F(PipelineTest, LoadsAndUploadsOnlyWhatTheEngineNeeds) {
+    const FrameStats plain = frame("unlit");
+    EXPECT_GT(plain.view_points, 0u);
+    EXPECT_EQ(plain.light_points, 0u);
+    EXPECT_EQ(plain.light_view_points, 0u);
+    const FrameStats traced = frame("reference");
+    EXPECT_GT(traced.light_points, 0u);
+    EXPECT_EQ(traced.light_view_points, 0u);
+    EXPECT_GT(traced.bytes_loaded, plain.bytes_loaded) << "the light cut covers what the camera does not see";
+    const FrameStats lit = frame("vpl");
+    EXPECT_GT(lit.light_points, 0u);
+    EXPECT_GT(lit.light_view_points, 0u);
+    const FrameStats again = frame("unlit");
+    EXPECT_EQ(again.light_points, 0u);
+    EXPECT_EQ(again.light_view_points, 0u);
+    EXPECT_EQ(again.wanted_points, plain.wanted_points);
+}
+
+TEST_F(PipelineTest, AComparedEngineGetsWhatItNeedsToo) {
+    gi::Scene scene = pipeline_->scene();
+    scene.comparison.emplace().engine = "vpl";
+    ASSERT_TRUE(pipeline_->set_scene(scene));
+    const FrameStats both = frame("unlit");
+    EXPECT_GT(both.light_points, 0u);
+    EXPECT_GT(both.light_view_points, 0u);
+}
+
+TEST_F(PipelineTest, TheNodesOfTheEngineThatStandsInInMotionAreThereBeforeTheMotion) {
+    request_.wait = false;
+    while (frame("reference").complete() < 1) {  // nodes arrive while frames are drawn
+    }
+    request_.moving = request_.stand_in = true;
+    const FrameStats moving = frame("reference");
+    EXPECT_GT(moving.light_view_points, 0u);
+    EXPECT_EQ(moving.complete(), 1);
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

@@ -1,0 +1,72 @@
+#include "viewer/frame/engine_bake.h"
+
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "gi/bake/bake_file.h"
+#include "gi/scene/views.h"
+#include "octree/stream/cut.h"
+
+namespace lucarne::viewer {
+
+EngineBake::Inputs EngineBake::inputs_of(const BakeSubject& subject) {
+    const gi::Precomputes& how = *subject.engine.precomputes;
+    const gi::Scene& scene = subject.scene;
+    Inputs inputs{.engine = &subject.engine,
+                  .source = subject.source,
+                  .packing = subject.surfels.packing(),
+                  .points = subject.points,
+                  .open_holes = scene.look.open_holes};
+    if (!scene.look.clip.casts) inputs.clip = scene.look.clip;
+    if (how.lights) inputs.lights = scene.lights;
+    if (how.materials) {
+        inputs.materials = scene.materials;
+        inputs.albedo_scale = scene.albedo.scale;
+    }
+    if (how.environment) inputs.environment = scene.environment;
+    for (const gi::OptionInfo* option : how.options) inputs.options.push_back(subject.settings.get(*option));
+    return inputs;
+}
+
+void EngineBake::update(const BakeSubject& subject) {
+    if (!subject.engine.precomputes) {
+        job_.reset();
+        return;
+    }
+    Inputs inputs = inputs_of(subject);
+    if (job_ && inputs == inputs_) return;
+    job_.reset();  // keeps what it has done before the next one looks for it
+    inputs_ = std::move(inputs);
+    const glm::dvec3 middle = (subject.bounds[0] + subject.bounds[1]) / 2.0;
+    const auto& source = *subject.source;
+    frame_ = gi::local_frame(middle, source.header().metres_per_unit);
+    gi::BakeOrder order{.engine = &subject.engine,
+                        .source = subject.source,
+                        .preparation = subject.surfels.preparation(),
+                        .cut = octree::light_cut(source, middle, subject.points, {},
+                                                 glm::distance(subject.bounds[0], subject.bounds[1])),
+                        .fill_holes = !inputs_.open_holes,
+                        .clip = inputs_.clip};
+    order.input.cut.frame = frame_;
+    for (const gi::SceneLight& light : subject.scene.lights)
+        order.input.lights.push_back(gi::device_light(light, frame_));
+    for (const gi::SceneMaterial& material : subject.scene.materials)
+        order.input.materials.push_back(gi::device_material(material, subject.scene.albedo.scale));
+    order.input.environment = subject.scene.environment;
+    order.input.settings = subject.settings;
+    file_.clear();
+    if (const auto identity = source.identity()) {
+        order.input.source = identity->content;
+        order.file = file_ = gi::bake_place(identity->file, subject.engine.name);
+    }
+    job_ = std::make_unique<gi::BakeJob>(std::move(order), published_);
+}
+
+Result<void> EngineBake::wait(const std::atomic<bool>* stop, Progress* progress) const {
+    if (!job_) return {};
+    job_->wait(stop, progress);
+    return job_->status().error;
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/bake/bake_job.h"
+#include "gi/scene/scene.h"
+#include "io/core/progress.h"
+#include "viewer/frame/presets.h"
+#include "viewer/frame/surfel_stream.h"
+
+namespace lucarne::viewer {
+
+/// What a precomputation is made for. The references must hold during the call they are passed to.
+struct BakeSubject {
+    const gi::EngineInfo& engine;
+    const std::shared_ptr<const octree::NodeSource>& source;
+    const std::array<glm::dvec3, 2>& bounds;  ///< robust bounds of the source, world units
+    const SurfelStream& surfels;
+    const gi::Scene& scene;
+    const gi::EngineSettings& settings;
+    uint64_t points = 0;  ///< of the cut
+};
+
+/// Runs the precomputation of the engine that draws pictures, and starts it again when an input changes.
+class EngineBake {
+ public:
+    /// `published` is called on another thread when there is news.
+    void on_news(std::function<void()> published) { published_ = std::move(published); }
+    /// Starts what the engine precomputes, unless that runs or is done. An engine that precomputes nothing
+    /// ends what runs.
+    void update(const BakeSubject& subject);
+    /// Waits until it has ended or `stop` is true. Errors: it failed.
+    Result<void> wait(const std::atomic<bool>* stop, Progress* progress) const;
+
+    bool running() const { return job_ != nullptr; }
+    gi::BakeJob::Status status() const { return job_ ? job_->status() : gi::BakeJob::Status{}; }
+    /// The file in which the result is kept; empty if it is not.
+    const std::filesystem::path& file() const { return file_; }
+    /// Meaning of the coordinates of its surfels.
+    const gi::LocalFrame& frame() const { return frame_; }
+
+ private:
+    /// All inputs, for comparisons. Those that the engine does not depend on have always the same value.
+    struct Inputs {
+        const gi::EngineInfo* engine = nullptr;
+        std::shared_ptr<const octree::NodeSource> source;
+        uint64_t packing = 0, points = 0;
+        bool open_holes = false;
+        gi::Clip clip;
+        std::vector<gi::SceneLight> lights;
+        std::vector<gi::SceneMaterial> materials;
+        double albedo_scale = 1;
+        std::shared_ptr<const gi::Environment> environment;
+        std::vector<gi::OptionValue> options;
+        bool operator==(const Inputs&) const = default;
+    };
+    static Inputs inputs_of(const BakeSubject& subject);
+
+    std::function<void()> published_ = [] {};
+    Inputs inputs_;
+    gi::LocalFrame frame_;
+    std::filesystem::path file_;
+    std::unique_ptr<gi::BakeJob> job_;
+};
+
+}  // namespace lucarne::viewer
