@@ -2,6 +2,7 @@
 #include <array>
 
 #include "gi/engines/direct/direct.h"
+#include "gi/engines/micro/micro.h"
 #include "gi/engines/reference/reference.h"
 #include "gi/engines/unlit/unlit.h"
 #include "gi/engines/vpl/vpl.h"
@@ -10,7 +11,8 @@
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array all = {direct_engine(), vpl_engine(), reference_engine(), unlit_engine()};
+    static const std::array all = {direct_engine(), vpl_engine(), micro_engine(), reference_engine(),
+                                   unlit_engine()};
     return all;
 }
 

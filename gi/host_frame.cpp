@@ -1,8 +1,14 @@
 #include "gi/host_frame.h"
 
+#include <algorithm>
 #include <cassert>
 
+#include <glm/geometric.hpp>
+#include <glm/packing.hpp>
+
 #include "gi/gl_frame.h"
+#include "gi/shared/surfel_code.h"
+#include "io/core/parallel.h"
 
 namespace lucarne::gi {
 
@@ -14,6 +20,31 @@ std::vector<Surfel> download_light_surfels(const Frame& frame) {
 std::vector<GBufferTexel> download_gbuffer(const Frame& frame) {
     const GBuffer& gbuffer = frame.gl.gbuffer;
     return gbuffer.texels.download_all<GBufferTexel>(size_t{gbuffer.width} * gbuffer.height);
+}
+
+std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels) {
+    std::vector<SurfacePoint> points(texels.size());
+    const vec3 forward(camera.forward), right(camera.right), up(camera.up), eye(camera.origin);
+    parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const GBufferTexel& texel = texels[i];
+            const glm::vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
+            const glm::vec2 ndc = view_ndc(camera, pixel + .5f);
+            const vec3 across = right * ndc.x - up * ndc.y;
+            const bool parallel = camera.projection == kOrthographic;
+            const vec3 ray = parallel ? forward : forward + across, from = parallel ? eye + across : eye;
+            SurfacePoint& point = points[i];
+            point.viewer = -glm::normalize(ray);
+            if (!(texel.depth > 0)) continue;
+            point.position = from + texel.depth * ray;
+            point.normal = decode_octahedral(texel.normal);
+            point.albedo = decode_albedo(texel.albedo);
+            // A half float may have become 0 or infinite, but there is a surface.
+            point.radius = std::clamp(glm::unpackHalf2x16(texel.material).y, 1e-7f, 65504.0f);
+            point.material = texel.material & 0xffffu;
+        }
+    });
+    return points;
 }
 
 void upload_radiance(Frame& frame, std::span<const glm::vec4> radiance) {

@@ -18,6 +18,20 @@ std::vector<Surfel> download_light_surfels(const Frame& frame);
 /// The surface that each pixel of the picture shows, row 0 on top. Waits for the device.
 std::vector<GBufferTexel> download_gbuffer(const Frame& frame);
 
+/// A point of a surface that a pixel shows.
+struct SurfacePoint {
+    glm::vec3 position{0.0f};  ///< m, relative to the local origin
+    glm::vec3 normal{0.0f};    ///< unit, toward the viewer
+    glm::vec3 viewer{0.0f};  ///< unit, from the point to the viewer; set for pixels without a surface as well
+    glm::vec3 albedo{0.0f};  ///< linear, before the material's scale
+    float radius = 0;        ///< of its surfel, m; 0: there is no surface
+    uint32_t material = 0;
+};
+
+/// Decodes download_gbuffer(): the surface of each pixel. Engines that light these differ in transport and
+/// not in visibility.
+std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels);
+
 /// Sets the radiance of all pixels (rgb W/(sr m^2), row 0 on top).
 void upload_radiance(Frame& frame, std::span<const glm::vec4> radiance);
 

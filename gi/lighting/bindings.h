@@ -13,7 +13,9 @@ const uint kBindCameraTexels = 3u;  // GBufferTexel[] of the picture
 const uint kBindLightTexels = 4u;   // GBufferTexel[] of a light view
 const uint kBindLightingMaterials = 5u;
 const uint kBindLitRadiance = 6u;
-const uint kBindSky = 7u;  // r, g, b of each texel
+const uint kBindSky = 7u;               // r, g, b of each texel
+const uint kBindLitSurfels = 5u;        // FlatSurfel[]; no shader binds materials as well
+const uint kBindSurfelIrradiance = 6u;  // of each surfel: r, g, b of its front, then of its back
 
 #ifdef __cplusplus
 }  // namespace lucarne::gi::lighting

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/engines/reference/path_sums.h"
+#include "gi/host_frame.h"
 #include "gi/tracing/illumination.h"
 #include "io/core/random.h"
 
@@ -32,15 +33,8 @@ struct PathSettings {
     bool sample_lit = true;
 };
 
-/// A point whose outgoing radiance is computed, as a G-buffer texel describes it.
-struct Start {
-    glm::vec3 position;
-    glm::vec3 normal;  ///< unit, toward the viewer
-    glm::vec3 viewer;  ///< unit, from the point to the viewer
-    glm::vec3 albedo;  ///< linear, before the material's scale
-    float radius = 0;  ///< of its surfel; 0: no surface here, the radiance is 0
-    uint32_t material = 0;
-};
+/// A point whose outgoing radiance is computed.
+using Start = SurfacePoint;
 
 /// Unidirectional path tracing over surfels. At each vertex a path samples lights, environment, emitting
 /// surfels (next event estimation) and surfels that sharp lights illuminate. The light that the BRDF's own

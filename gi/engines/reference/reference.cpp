@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
-#include <glm/packing.hpp>
 
 #include "gi/bounce_options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/reference/path_tracer.h"
 #include "gi/host_frame.h"
-#include "gi/shared/surfel_code.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
 
@@ -23,33 +21,6 @@ using reference::PathTracer;
 using reference::Start;
 using tracing::Illumination;
 using tracing::SurfelTracer;
-
-/// Returns the surfaces that the camera sees. They come from the G-buffer, as for every engine, so that the
-/// reference differs from the others in transport and not in visibility.
-std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTexel> texels) {
-    std::vector<Start> starts(texels.size());
-    const vec3 forward(camera.forward), right(camera.right), up(camera.up), eye(camera.origin);
-    parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
-            const GBufferTexel& texel = texels[i];
-            const glm::vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
-            const glm::vec2 ndc = view_ndc(camera, pixel + .5f);
-            const vec3 across = right * ndc.x - up * ndc.y;
-            const bool parallel = camera.projection == kOrthographic;
-            const vec3 ray = parallel ? forward : forward + across, from = parallel ? eye + across : eye;
-            Start& start = starts[i];
-            start.viewer = -glm::normalize(ray);
-            if (!(texel.depth > 0)) continue;
-            start.position = from + texel.depth * ray;
-            start.normal = decode_octahedral(texel.normal);
-            start.albedo = decode_albedo(texel.albedo);
-            // A half float may have become 0 or infinite, but there is a surface.
-            start.radius = std::clamp(glm::unpackHalf2x16(texel.material).y, 1e-7f, 65504.0f);
-            start.material = texel.material & 0xffffu;
-        }
-    });
-    return starts;
-}
 
 /// Returns the radiance of a pixel without a surface.
 vec3 background(const Frame& frame, const Start& start) {
@@ -131,7 +102,7 @@ void ReferenceEngine::take_in(const Frame& frame, std::vector<PathSums> sums) {
 
 Result<void> ReferenceEngine::render(Frame& frame) {
     const TimedPass pass(frame, "paths");
-    const auto starts = starts_of(frame.camera, download_gbuffer(frame));
+    const auto starts = visible_surfaces(frame.camera, download_gbuffer(frame));
     const size_t pixels = starts.size();
     const PathSettings settings{.bounces = frame.settings[kBounces],
                                 .only_bounce = frame.settings[kOnlyBounce],

@@ -1,0 +1,232 @@
+#include "gi/engines/micro/micro.h"
+
+#include <memory>
+
+#include "gi/bounce_options.h"
+#include "gi/engines/micro/options.h"
+#include "gi/engines/micro/radiosity.h"
+#include "gi/engines/micro/upsample.h"
+#include "gi/gl_frame.h"
+#include "gi/host_frame.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_options.h"
+#include "gi/shared/brdf.h"
+#include "io/core/parallel.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi {
+namespace micro {
+namespace {
+
+constexpr const OptionInfo* kOptions[] = {
+    &kBounces.info,        &kOnlyBounce.info,      &kMicroBuffer.info,  &kGatherEvery.info,
+    &kRadiosityLevel.info, &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr EngineInfo kInfo{.name = "micro",
+                           .label = "Final gathering",
+                           .description = "every pixel gathers the light of all surfels, on OpenCL",
+                           .options = kOptions,
+                           .needs = {.light_cut = true, .light_views = true, .opencl = true},
+                           .reports_progress = true};
+
+constexpr uint32_t kLargestRadiositySide = 16;
+
+class MicroEngine final : public Engine {
+ public:
+    const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override;
+
+ protected:
+    void update(const Changes& changes) override;
+    Result<void> prepare(Frame& frame) override;
+    Result<void> render(Frame& frame) override;
+
+ private:
+    /// What the light of the tree depends on.
+    struct Basis {
+        SceneRevisions scene;
+        LightCutRevisions cuts;
+        uint64_t index = 0;  ///< Frame::index, where lights are sampled
+        bool operator==(const Basis&) const = default;
+    };
+    Result<void> make_light(Frame& frame);
+    Result<void> gather(Frame& frame);
+    Result<void> add_direct(Frame& frame);
+
+    std::unique_ptr<ClDevice> opencl_;
+    Gatherer gatherer_;  // destroyed before its device
+    Buffer materials_;
+    Sky sky_;
+    std::vector<LightView> views_;
+    LightGBuffers light_gbuffers_;
+    LitTree lit_;
+    Radiosity radiosity_;
+    SceneRevisions scene_;  ///< of the frame that is drawn
+    LightCutRevisions cuts_;
+    std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
+    std::optional<Basis> light_of_;
+    size_t gather_points_ = 0, gathered_again_ = 0;
+};
+
+void MicroEngine::update(const Changes& changes) {
+    scene_ = changes.scene;
+    cuts_ = changes.light_cuts;
+}
+
+Result<void> MicroEngine::prepare(Frame& frame) {
+    if (frame.gl.cuts.light_views.size() < frame.lights.size() || !frame.gl.cuts.light)
+        return failed("micro", "the cuts of the light are missing");
+    if (!opencl_) {
+        LUCARNE_ASSIGN(opencl_, ClDevice::open(frame.gl.device));
+    }
+    LUCARNE_TRY(upload_sky(frame, sky_));
+    return upload_materials(frame.gl.device, frame.materials, materials_);
+}
+
+bool wants_direct(const EngineSettings& s) {
+    return s[kOnlyBounce] <= 0;
+}
+bool wants_indirect(const EngineSettings& s) {
+    return s[kOnlyBounce] < 0 ? s[kBounces] > 0 : s[kOnlyBounce] > 0;
+}
+
+/// Brings tree and light up to date.
+Result<void> MicroEngine::make_light(Frame& frame) {
+    if (tree_of_ != cuts_.light) {
+        const TimedPass pass(frame, "surfel tree");
+        tree_of_.reset();
+        light_of_.reset();
+        LUCARNE_TRY(lit_.set_surfels(frame));
+        LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));
+        tree_of_ = cuts_.light;
+    }
+    const bool sampled = views_.size() > frame.lights.size();
+    const Basis basis{scene_, cuts_, sampled ? frame.index : 0};
+    if (light_of_ == basis) return {};
+    light_of_.reset();
+    const EngineSettings& s = frame.settings;
+    {
+        const TimedPass pass(frame, "surfel light");
+        LUCARNE_TRY(lit_.set_light(frame, views_, light_gbuffers_));
+    }
+    const bool only = s[kOnlyBounce] >= 0;
+    const Radiosity::Settings settings{
+        .bounces = (only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces]) - 1,
+        .only_last = only,
+        .side = std::min(s[kMicroBuffer], kLargestRadiositySide),
+        .seed = mix64(s[kSeed], frame.index)};
+    const TimedPass pass(frame, "radiosity");
+    if (settings.bounces > 0) radiosity_.choose_places(lit_, s[kRadiosityLevel]);
+    std::vector<SideLight> light, slots;
+    LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
+    if (frame.stopped()) return {};
+    pull_light(lit_.tree(), light, slots);
+    LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
+    light_of_ = basis;
+    return {};
+}
+
+/// Sets frame.gl.radiance to the reflected light of all surfels.
+Result<void> MicroEngine::gather(Frame& frame) {
+    const EngineSettings& s = frame.settings;
+    const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    const uint32_t step = s[kGatherEvery];
+    const uint64_t seed = mix64(s[kSeed], frame.index);
+    // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
+    const uint32_t place =
+        frame.index == 0 ? (step / 2) * (step + 1) : static_cast<uint32_t>(mix64(seed) % (step * step));
+    const GatherGrid grid{frame.camera.width, frame.camera.height, step, place % step, place / step};
+    const auto point_of = [&](uint32_t pixel) {
+        const SurfacePoint& at = surfaces[pixel];
+        return GatherPoint{at.position, at.radius, at.normal, static_cast<uint32_t>(mix64(seed, pixel)),
+                           at.viewer,   0};
+    };
+    std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
+    // Gathers at those of these pixels that show a surface; results by their order.
+    const auto gather_at = [&](const std::vector<uint32_t>& pixels, std::vector<glm::vec4>& results) {
+        std::vector<GatherPoint> points;
+        std::vector<size_t> places;
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            if (!(surfaces[pixels[i]].radius > 0)) continue;
+            points.push_back(point_of(pixels[i]));
+            places.push_back(i);
+        }
+        std::vector<glm::vec4> found(points.size());
+        results.assign(pixels.size(), glm::vec4(0.0f));
+        const auto done =
+            gatherer_.gather(*opencl_, points, s[kMicroBuffer], seed, found, frame.stop, frame.progress);
+        for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
+        gather_points_ += points.size();
+        return done;
+    };
+    std::vector<uint32_t> pixels;
+    for (uint32_t row = 0; row < grid.rows(); ++row)
+        for (uint32_t column = 0; column < grid.columns(); ++column)
+            pixels.push_back(grid.pixel(column, row));
+    gather_points_ = gathered_again_ = 0;
+    std::vector<glm::vec4> gathered;
+    {
+        const TimedPass pass(frame, "gather");
+        LUCARNE_TRY(gather_at(pixels, gathered));
+    }
+    if (frame.stopped()) return {};
+    if (step == 1) {
+        light = std::move(gathered);
+    } else {
+        const TimedPass pass(frame, "upsample");
+        const auto missing = upsample(frame.camera, surfaces, grid, gathered, light);
+        gathered_again_ = missing.size();
+        LUCARNE_TRY(gather_at(missing, gathered));
+        for (size_t i = 0; i < missing.size(); ++i) light[missing[i]] = gathered[i];
+    }
+    const std::vector<Material> materials = device_materials(frame.materials);
+    parallel_ranges(light.size(), 4096, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const SurfacePoint& at = surfaces[i];
+            const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
+            light[i] = glm::vec4(r.kd * glm::vec3(light[i]), 0);
+        }
+    });
+    upload_radiance(frame, light);
+    return {};
+}
+
+/// Adds emission, background and the first reflection of the lights.
+Result<void> MicroEngine::add_direct(Frame& frame) {
+    const TimedPass pass(frame, "direct light");
+    LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
+    for (const LightView& view : views_) {
+        LUCARNE_ASSIGN(const GBuffer* seen, light_gbuffers_.look(frame.gl.device, view));
+        LUCARNE_TRY(add_light(frame, materials_, view, *seen));
+    }
+    return {};
+}
+
+Result<void> MicroEngine::render(Frame& frame) {
+    views_ = light_views(frame, sky_.directions);
+    light_gbuffers_.begin(frame.gl.device, views_, views_.size());
+    frame.gl.radiance.clear(0);
+    if (wants_indirect(frame.settings)) {
+        LUCARNE_TRY(make_light(frame));
+        if (frame.stopped()) return {};
+        LUCARNE_TRY(gather(frame));
+    }
+    if (frame.stopped() || !wants_direct(frame.settings)) return {};
+    return add_direct(frame);
+}
+
+std::vector<std::pair<std::string, double>> MicroEngine::stats() const {
+    return {{"tree_nodes", lit_.tree().nodes.size()},
+            {"surfels", lit_.tree().leaves},
+            {"radiosity_places", radiosity_.places()},
+            {"gather_points", gather_points_},
+            {"gathered_again", gathered_again_}};
+}
+
+}  // namespace
+}  // namespace micro
+
+EngineEntry micro_engine() {
+    return {micro::kInfo, []() -> std::unique_ptr<Engine> { return std::make_unique<micro::MicroEngine>(); }};
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+
+#include "gi/options.h"
+
+namespace lucarne::gi::micro {
+
+inline constexpr std::array<int64_t, 5> kSides = {8, 12, 16, 24, 32};
+inline constexpr std::array<int64_t, 3> kSteps = {1, 2, 4};
+
+inline constexpr Option<uint32_t> kMicroBuffer{{
+    .kind = OptionKind::integer,
+    .key = "micro_buffer",
+    .label = "micro-buffer",
+    .help = "Side of the micro-buffers: as many directions as its square at every point that gathers",
+    .cost = "directions along a side: twice as many take four times as long, and resolve finer shadows",
+    .least = 8,
+    .most = 32,
+    .values = kSides,
+    .slider = {8, 32, true},
+    .defaults = {int64_t{8}, int64_t{16}, int64_t{24}},
+    .cheaper = -1,
+}};
+
+inline constexpr Option<uint32_t> kGatherEvery{{
+    .kind = OptionKind::integer,
+    .key = "gather_every",
+    .label = "gather every",
+    .help = "Gather at every pixel (1), or every 2nd or 4th along both axes and interpolate between them",
+    .cost = "pixels from one that gathers to the next: 4 is up to 16 times faster than 1, but blurs detail\n"
+            "in indirect light",
+    .least = 1,
+    .most = 4,
+    .values = kSteps,
+    .slider = {1, 4, true},
+    .defaults = {int64_t{4}, int64_t{4}, int64_t{1}},
+    .cheaper = 1,
+}};
+
+inline constexpr Option<uint32_t> kRadiosityLevel{{
+    .kind = OptionKind::integer,
+    .key = "radiosity_level",
+    .label = "radiosity level",
+    .help =
+        "Logarithm (base 2) of the number of places between which light is exchanged before the last bounce",
+    .cost = "one more doubles the time for every bounce but the last, and resolves its shadows more finely",
+    .least = 4,
+    .most = 18,
+    .slider = {8, 16},
+    .defaults = {int64_t{10}, int64_t{12}, int64_t{14}},
+    .cheaper = -1,
+}};
+
+}  // namespace lucarne::gi::micro

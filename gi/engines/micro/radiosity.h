@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gi/gather/gatherer.h"
+#include "gi/gather/lit_tree.h"
+
+namespace lucarne::gi::micro {
+
+/// Exchanges light between surfels (Ritschel et al. 2009, section 4; Jacobi iteration with push and pull,
+/// Cohen & Wallace 1993). A number of surfels that stand for the nodes of a level of the tree gather; the
+/// surfels of their nodes get the same irradiance, and reflect it each with its own albedo.
+class Radiosity {
+ public:
+    /// Chooses at most 2^level places, each for a node whose surfels are close together and nearly coplanar.
+    void choose_places(const LitTree& scene, uint32_t level);
+
+    struct Settings {
+        uint32_t bounces = 0;    ///< reflections to compute beyond the own light
+        bool only_last = false;  ///< return the light of the last one alone
+        uint32_t side = 16;      ///< of micro-buffers
+        uint64_t seed = 0;
+    };
+    /// Sets the light that each surfel sends out after all these reflections. Leaves out the rest if `stop`
+    /// becomes true. Errors: the device failed.
+    Result<void> compute(ClDevice& device, const LitTree& scene, Gatherer& gatherer, const Settings& settings,
+                         std::vector<SideLight>& light, const std::atomic<bool>* stop = nullptr) const;
+
+    size_t places() const { return points_.size() / 2; }
+
+ private:
+    std::vector<GatherPoint> points_;  ///< two a place: its surfel's front and back
+    std::vector<uint32_t> place_of_;   ///< by surfel; kNoSurfel: it has no disc
+};
+
+}  // namespace lucarne::gi::micro

@@ -1,0 +1,250 @@
+// Gathers light at points: draws the tree of surfels into a small picture of the half space above each point, one
+// work-item a point. Ritschel et al. 2009, "Micro-rendering for scalable, parallel final gathering", section 2.2.
+//
+// A pixel is a ray, and a disc covers it if the ray meets the disc. The picture is the unit disc on which directions
+// are projected along the normal (Nusselt), so that equal areas of it are equal shares of the irradiance: a square of
+// LUCARNE_GRID pixels a side about it, in rows of LUCARNE_ROW, which leave room for vectors of eight behind the last
+// pixel.
+#include "gi/gather/gather_point.h"
+#include "gi/tree/wide_node.h"
+
+#define GRID LUCARNE_GRID
+#define ROW LUCARNE_ROW
+#define PIXELS (GRID * ROW)
+// Nodes are drawn as one disc if their radius over their distance is at most this: four pixels across. Rows of eight
+// pixels cost as much as one, so smaller nodes would only add work.
+#define LARGEST_NODE (4.0f / GRID)
+#define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
+#define EMPTY 0xffffffffu
+#define NOTHING 1e30f
+#define MOST_SHIFT 4.0f  // in lifts, see seen_slot()
+
+// Numbers from 0 to 1.
+float fraction_of(uint seed) {
+    seed ^= seed >> 16;
+    seed *= 0x7feb352du;
+    seed ^= seed >> 15;
+    seed *= 0x846ca68bu;
+    seed ^= seed >> 16;
+    return (seed >> 8) * 0x1p-24f;
+}
+
+float3 slot_middle(global const WideNode* nodes, uint slot) {
+    global const WideNode* node = nodes + slot / 8;
+    uint k = slot % 8;
+    return (float3)(node->x[k], node->y[k], node->z[k]);
+}
+float3 slot_axis(global const WideNode* nodes, uint slot) {
+    global const WideNode* node = nodes + slot / 8;
+    uint k = slot % 8;
+    return (float3)(node->nx[k], node->ny[k], node->nz[k]);
+}
+
+// Returns the slot of the first surfel that a ray meets up to the distance `most`, which becomes its distance; EMPTY
+// if there is none.
+uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, float* most) {
+    int stack[STACK];
+    int top = 0;
+    uint found = EMPTY;
+    stack[top++] = 0;
+    while (top > 0) {
+        int at = stack[--top];
+        global const WideNode* node = nodes + at;
+        float8 dx = vload8(0, node->x) - from.x, dy = vload8(0, node->y) - from.y, dz = vload8(0, node->z) - from.z;
+        float8 bound = vload8(0, node->bound);
+        int8 child = vload8(0, node->child);
+        float8 along = dx * direction.x + dy * direction.y + dz * direction.z;
+        float8 beside = dx * dx + dy * dy + dz * dz - along * along;
+        int8 near = (beside <= bound * bound * 1.0001f) & (along > -bound) & (along < *most + bound);
+        int8 go = near & (child >= 0);
+        if (any(go)) {
+            int goes[8], children[8];
+            vstore8(go, 0, goes);
+            vstore8(child, 0, children);
+            for (int k = 0; k < 8; ++k) {
+                stack[top] = children[k];
+                top += goes[k] != 0;
+            }
+        }
+        int8 leaf = near & (child == (int8)(kLeafChild));
+        if (!any(leaf)) continue;
+        float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
+        float8 distance = (dx * nx + dy * ny + dz * nz) / (direction.x * nx + direction.y * ny + direction.z * nz);
+        float8 ox = direction.x * distance - dx, oy = direction.y * distance - dy, oz = direction.z * distance - dz;
+        int8 met = leaf & (distance > 0.0f) & (ox * ox + oy * oy + oz * oz <= bound * bound);
+        if (!any(met)) continue;
+        int meets[8];
+        float distances[8];
+        vstore8(met, 0, meets);
+        vstore8(distance, 0, distances);
+        for (int k = 0; k < 8; ++k) {
+            uint slot = (uint)(at * 8 + k);
+            if (!meets[k] || distances[k] > *most || (distances[k] == *most && slot > found)) continue;
+            *most = distances[k];
+            found = slot;
+        }
+    }
+    return found;
+}
+
+// Returns where rays start, `lift` above the surface. The picture may show the rim of a disc that lies a little behind
+// another surface (kRimPush). Rays have to start on the viewer's side of that surface, or the rims of a sealed room
+// would be lit from outside.
+float3 start_of(global const WideNode* nodes, GatherPoint point) {
+    float3 position = (float3)(point.position.x, point.position.y, point.position.z);
+    float3 normal = (float3)(point.normal.x, point.normal.y, point.normal.z);
+    float3 viewer = (float3)(point.viewer.x, point.viewer.y, point.viewer.z);
+    float3 start = position + normal * point.lift;
+    if (dot(viewer, viewer) == 0.0f) return start;
+    float distance = 8.0f * point.lift;
+    uint hides = first_surfel(nodes, start, viewer, &distance);
+    if (hides == EMPTY) return start;
+    float radius = nodes[hides / 8].bound[hides % 8];
+    if (distance > 2.0f * fmax(point.lift, radius)) return start;  // another object in front of it
+    float3 axis = slot_axis(nodes, hides);
+    return start + viewer * distance + axis * (dot(axis, viewer) > 0.0f ? radius : -radius);
+}
+
+// Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
+// and its slot. `side`, `across` and `normal` are the axes of the picture.
+void draw(global const WideNode* nodes, global const float* rays, float3 start, float3 side, float3 across,
+          float3 normal, float* depths, uint* slots) {
+    int stack[STACK];
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        int at = stack[--top];
+        global const WideNode* node = nodes + at;
+        float8 dx = vload8(0, node->x) - start.x, dy = vload8(0, node->y) - start.y, dz = vload8(0, node->z) - start.z;
+        float8 bound = vload8(0, node->bound);
+        float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
+        int8 child = vload8(0, node->child);
+        float8 height = dx * normal.x + dy * normal.y + dz * normal.z;
+        float8 facing = nx * normal.x + ny * normal.y + nz * normal.z;
+        float8 distance2 = dx * dx + dy * dy + dz * dz;
+        // What the discs of the child rise above its middle: those of the point's own surface lie below the start.
+        float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + vload8(0, node->thickness));
+        int8 above = (height > -rise) & (child != (int8)(kNoChild));
+        int8 large = (bound * bound > distance2 * (LARGEST_NODE * LARGEST_NODE)) & (child >= 0);
+        int8 go = above & large, drawn = above & ~large;
+        if (any(go)) {
+            int goes[8], children[8];
+            vstore8(go, 0, goes);
+            vstore8(child, 0, children);
+            for (int k = 0; k < 8; ++k) {
+                stack[top] = children[k];
+                top += goes[k] != 0;
+            }
+        }
+        if (!any(drawn)) continue;
+        float8 mx = dx * side.x + dy * side.y + dz * side.z, my = dx * across.x + dy * across.y + dz * across.z;
+        float8 ax = nx * side.x + ny * side.y + nz * side.z, ay = nx * across.x + ny * across.y + nz * across.z;
+        float8 disc = vload8(0, node->disc), nearer = rsqrt(distance2);
+        // Directions to a disc differ from that to its middle by at most 2 sin(asin(s) / 2) < s (1 + .42 s^2).
+        float8 s = disc * nearer;
+        float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * (0.5f * GRID) + 0.5f;
+        float8 px = (mx * nearer + 1.0f) * (0.5f * GRID) - 0.5f, py = (my * nearer + 1.0f) * (0.5f * GRID) - 0.5f;
+        float left[8], right[8], upper[8], lower[8];
+        float x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], radius2[8], plane[8];
+        int draws[8];
+        vstore8(fmax(ceil(px - extent), 0.0f), 0, left);
+        vstore8(fmin(floor(px + extent), GRID - 1.0f), 0, right);
+        vstore8(fmax(ceil(py - extent), 0.0f), 0, upper);
+        vstore8(fmin(floor(py + extent), GRID - 1.0f), 0, lower);
+        vstore8(mx, 0, x), vstore8(my, 0, y), vstore8(height, 0, z);
+        vstore8(ax, 0, axis_x), vstore8(ay, 0, axis_y), vstore8(facing, 0, axis_z);
+        vstore8(disc * disc, 0, radius2);
+        vstore8(mx * ax + my * ay + height * facing, 0, plane);
+        vstore8(drawn, 0, draws);
+        for (int k = 0; k < 8; ++k) {
+            if (!draws[k]) continue;
+            uint slot = (uint)(at * 8 + k);
+            int first = (int)left[k], last = (int)right[k], end = (int)lower[k];
+            for (int j = (int)upper[k]; j <= end; ++j)
+                for (int i = first; i <= last; i += 8) {
+                    int pixel = j * ROW + i;
+                    float8 rx = vload8(0, rays + pixel), ry = vload8(0, rays + PIXELS + pixel);
+                    float8 rz = vload8(0, rays + 2 * PIXELS + pixel);
+                    float8 t = plane[k] / (rx * axis_x[k] + ry * axis_y[k] + rz * axis_z[k]);
+                    float8 ox = rx * t - x[k], oy = ry * t - y[k], oz = rz * t - z[k];
+                    float8 depth = vload8(0, depths + pixel);
+                    uint8 held = vload8(0, slots + pixel);
+                    int8 nearest = (t < depth) | ((t == depth) & (held > slot));
+                    int8 met = (t > 0.0f) & nearest & (ox * ox + oy * oy + oz * oz <= radius2[k]) & (rz > 0.0f);
+                    vstore8(select(depth, t, met), 0, depths + pixel);
+                    vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
+                }
+        }
+    }
+}
+
+// Returns the slot whose light the surface receives from a direction. Rays start above the surface to clear its noise,
+// and so would see everything from too near. Therefore the light is that of the point where the line from the surface
+// itself meets the plane of the disc; the pixel that shows that point knows its slot. `lifted`: from the surface to
+// the start, along the axes of the picture.
+uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float depth, float3 ray, float3 lifted,
+               float3 side, float3 across, float3 normal, float3 position, float lift) {
+    float3 axis = slot_axis(nodes, slot);
+    float3 direction = side * ray.x + across * ray.y + normal * ray.z;
+    float straight = dot(axis, slot_middle(nodes, slot) - position) / dot(axis, direction);
+    if (!(straight > 0.0f) || fabs(straight - depth) > MOST_SHIFT * lift) return slot;
+    float3 seen = ray * straight - lifted;
+    if (!(seen.z > 0.0f)) return slot;
+    float nearer = rsqrt(dot(seen, seen));
+    int i = clamp((int)((seen.x * nearer + 1.0f) * (0.5f * GRID)), 0, GRID - 1);
+    int j = clamp((int)((seen.y * nearer + 1.0f) * (0.5f * GRID)), 0, GRID - 1);
+    uint other = slots[j * ROW + i];
+    if (other == EMPTY || other == slot) return slot;
+    // It has to be the same surface, not what stands beside it.
+    float3 point = position + direction * straight;
+    float away = fabs(dot(slot_axis(nodes, other), point - slot_middle(nodes, other)));
+    float allowed = 2.0f * lift + nodes[other / 8].thickness[other % 8];
+    return away <= allowed ? other : slot;
+}
+
+// For each point: the mean radiance of its rays, W/(sr m^2) (times pi: irradiance), and the share of rays that meet
+// nothing. `light`: six floats a slot, the radiance of its front and of its back. `rays`: sets of x, y and z of all
+// pixels; z is 0 where a pixel has no ray.
+kernel void gather(global const WideNode* nodes, global const float* light, global const GatherPoint* points,
+                   global const float* rays, uint sets, uint count, global float4* results) {
+    uint number = get_global_id(0);
+    if (number >= count) return;
+    GatherPoint point = points[number];
+    float3 position = (float3)(point.position.x, point.position.y, point.position.z);
+    float3 normal = (float3)(point.normal.x, point.normal.y, point.normal.z);
+    float3 start = start_of(nodes, point);
+    float angle = 6.28318531f * fraction_of(point.seed);
+    float3 u = normalize(cross(fabs(normal.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), normal));
+    float3 v = cross(normal, u);
+    float3 side = cos(angle) * u + sin(angle) * v, across = cross(normal, side);
+    global const float* set = rays + (point.seed % sets) * (3 * PIXELS);
+
+    float depths[PIXELS];
+    uint slots[PIXELS];
+    for (int i = 0; i < PIXELS; i += 8) {
+        vstore8((float8)(NOTHING), 0, depths + i);
+        vstore8((uint8)(EMPTY), 0, slots + i);
+    }
+    draw(nodes, set, start, side, across, normal, depths, slots);
+
+    float3 away = start - position, sum = (float3)(0.0f);
+    float3 lifted = (float3)(dot(away, side), dot(away, across), dot(away, normal));
+    uint cast = 0, empty = 0;
+    for (int j = 0; j < GRID; ++j)
+        for (int i = 0; i < GRID; ++i) {
+            int pixel = j * ROW + i;
+            float3 ray = (float3)(set[pixel], set[PIXELS + pixel], set[2 * PIXELS + pixel]);
+            if (!(ray.z > 0.0f)) continue;
+            ++cast;
+            uint slot = slots[pixel];
+            if (slot == EMPTY) {
+                ++empty;
+                continue;
+            }
+            slot = seen_slot(nodes, slots, slot, depths[pixel], ray, lifted, side, across, normal, position, point.lift);
+            float3 direction = side * ray.x + across * ray.y + normal * ray.z;
+            uint back = dot(slot_axis(nodes, slot), direction) < 0.0f ? 0u : 1u;
+            sum += vload3(2 * slot + back, light);
+        }
+    results[number] = (float4)(sum / cast, (float)(empty) / cast);
+}

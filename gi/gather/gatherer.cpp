@@ -1,0 +1,95 @@
+#include "gi/gather/gatherer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "io/core/random.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr uint32_t kSets = 32;          // of rays; points choose among them
+constexpr size_t kPointsAtOnce = 4096;  // a run of the kernel: short, so that it can be stopped in between
+
+/// A disc in a square holds pi / 4 of its pixels.
+uint32_t grid_for(uint32_t side) {
+    return static_cast<uint32_t>(std::lround(side * std::sqrt(4 / M_PI)));
+}
+
+/// Rows have seven floats of room behind their last pixel and are multiples of eight.
+uint32_t row_for(uint32_t grid) {
+    return (grid + 14) / 8 * 8;
+}
+
+}  // namespace
+
+Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
+    empty_ = tree.empty();
+    if (empty_) return {};
+    const auto bytes = std::as_bytes(std::span(tree.nodes));
+    LUCARNE_TRY(device.reserve(nodes_, bytes.size(), "tree of surfels"));
+    return nodes_.upload(0, bytes);
+}
+
+Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> slots) {
+    if (slots.empty()) return {};
+    const auto bytes = std::as_bytes(slots);
+    LUCARNE_TRY(device.reserve(light_, bytes.size(), "light of the tree"));
+    return light_.upload(0, bytes);
+}
+
+/// Makes kSets sets of rays: one in every pixel of the unit disc, at a random place of the pixel.
+Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed) {
+    if (rays_ && grid_ == grid && seed_ == seed) return {};
+    const size_t row = row_for(grid), pixels = grid * row;
+    std::vector<float> rays(kSets * 3 * pixels);
+    Random random(seed, grid);
+    for (size_t set = 0; set < kSets; ++set)
+        for (size_t j = 0; j < grid; ++j)
+            for (size_t i = 0; i < grid; ++i) {
+                const double x = 2 * (static_cast<double>(i) + random.uniform()) / grid - 1;
+                const double y = 2 * (static_cast<double>(j) + random.uniform()) / grid - 1;
+                const double z2 = 1 - x * x - y * y;
+                if (!(z2 > 1e-6)) continue;
+                float* ray = &rays[set * 3 * pixels + j * row + i];
+                ray[0] = static_cast<float>(x);
+                ray[pixels] = static_cast<float>(y);
+                ray[2 * pixels] = static_cast<float>(std::sqrt(z2));
+            }
+    LUCARNE_TRY(device.reserve(rays_, rays.size() * sizeof(float), "rays"));
+    LUCARNE_TRY(rays_.upload(0, std::as_bytes(std::span(rays))));
+    grid_ = grid;
+    seed_ = seed;
+    return {};
+}
+
+Result<void> Gatherer::gather(ClDevice& device, std::span<const GatherPoint> points, uint32_t side,
+                              uint64_t seed, std::span<glm::vec4> results, const std::atomic<bool>* stop,
+                              Progress* progress) {
+    if (empty_) {
+        std::ranges::fill(results, glm::vec4(0, 0, 0, 1));
+        return {};
+    }
+    const uint32_t grid = grid_for(side);
+    LUCARNE_TRY(make_rays(device, grid, seed));
+    const Defines defines = {{"LUCARNE_GRID", fmt::format("{}", grid)},
+                             {"LUCARNE_ROW", fmt::format("{}", row_for(grid))}};
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel("gi/gather/gather.cl", "gather", defines));
+    const size_t most = std::min(points.size(), kPointsAtOnce);
+    LUCARNE_TRY(device.reserve(points_, most * sizeof(GatherPoint), "gather points"));
+    LUCARNE_TRY(device.reserve(results_, most * sizeof(glm::vec4), "gathered light"));
+    for (size_t first = 0; first < points.size(); first += kPointsAtOnce) {
+        if (stop && *stop) return {};
+        const size_t count = std::min(kPointsAtOnce, points.size() - first);
+        LUCARNE_TRY(points_.upload(0, std::as_bytes(points.subspan(first, count))));
+        LUCARNE_TRY(kernel->run(count, 1, nodes_, light_, points_, rays_, kSets, static_cast<uint32_t>(count),
+                                results_));
+        LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
+        if (progress) progress->add(count);
+    }
+    return {};
+}
+
+}  // namespace lucarne::gi

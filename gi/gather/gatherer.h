@@ -1,0 +1,41 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "gi/device/cl/cl_device.h"
+#include "gi/gather/gather_point.h"
+#include "gi/tree/surfel_tree.h"
+#include "io/core/progress.h"
+
+namespace lucarne::gi {
+
+/// Gathers the light of a tree of surfels at points, on an OpenCL device (gather.cl).
+class Gatherer {
+ public:
+    /// Sends the tree to the device. Errors: device memory.
+    Result<void> set_tree(ClDevice& device, const SurfelTree& tree);
+    /// Sends the light of the tree's slots (pull_light()). Errors: device memory.
+    Result<void> set_light(ClDevice& device, std::span<const SideLight> slots);
+    /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
+    /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
+    /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`
+    /// becomes true the rest is left out. Errors: the device failed.
+    Result<void> gather(ClDevice& device, std::span<const GatherPoint> points, uint32_t side, uint64_t seed,
+                        std::span<glm::vec4> results, const std::atomic<bool>* stop = nullptr,
+                        Progress* progress = nullptr);
+
+ private:
+    Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);
+
+    ClBuffer nodes_, light_, points_, results_, rays_;
+    bool empty_ = true;
+    uint32_t grid_ = 0;
+    uint64_t seed_ = 0;
+};
+
+}  // namespace lucarne::gi
