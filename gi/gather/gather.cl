@@ -106,9 +106,10 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
 }
 
 // Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
-// and its slot. `side`, `across` and `normal` are the axes of the picture.
-void draw(global const WideNode* nodes, global const float* rays, float3 start, float3 side, float3 across,
-          float3 normal, float* depths, uint* slots) {
+// and its slot. `side`, `across` and `normal` are the axes of the picture; `rays` are the directions of its pixels, zero
+// where a pixel has no ray.
+void draw(global const WideNode* nodes, const float* rays, float3 start, float3 side, float3 across, float3 normal,
+          float* depths, uint* slots) {
     int stack[STACK];
     int top = 0;
     stack[top++] = 0;
@@ -116,14 +117,14 @@ void draw(global const WideNode* nodes, global const float* rays, float3 start, 
         int at = stack[--top];
         global const WideNode* node = nodes + at;
         float8 dx = vload8(0, node->x) - start.x, dy = vload8(0, node->y) - start.y, dz = vload8(0, node->z) - start.z;
-        float8 bound = vload8(0, node->bound);
+        float8 bound = vload8(0, node->bound), thickness = vload8(0, node->thickness);
         float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
         int8 child = vload8(0, node->child);
         float8 height = dx * normal.x + dy * normal.y + dz * normal.z;
         float8 facing = nx * normal.x + ny * normal.y + nz * normal.z;
         float8 distance2 = dx * dx + dy * dy + dz * dz;
         // What the discs of the child rise above its middle: those of the point's own surface lie below the start.
-        float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + vload8(0, node->thickness));
+        float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
         int8 large = (bound * bound > distance2 * (LARGEST_NODE * LARGEST_NODE)) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
@@ -137,29 +138,37 @@ void draw(global const WideNode* nodes, global const float* rays, float3 start, 
             }
         }
         if (!any(drawn)) continue;
-        float8 mx = dx * side.x + dy * side.y + dz * side.z, my = dx * across.x + dy * across.y + dz * across.z;
-        float8 ax = nx * side.x + ny * side.y + nz * side.z, ay = nx * across.x + ny * across.y + nz * across.z;
         float8 disc = vload8(0, node->disc), nearer = rsqrt(distance2);
+        int8 thick = (thickness > bound * kThickNode) & (child >= 0);
+        nx = select(nx, dx * nearer, thick);
+        ny = select(ny, dy * nearer, thick);
+        nz = select(nz, dz * nearer, thick);
         // Directions to a disc differ from that to its middle by at most 2 sin(asin(s) / 2) < s (1 + .42 s^2).
         float8 s = disc * nearer;
         float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * (0.5f * GRID) + 0.5f;
-        float8 px = (mx * nearer + 1.0f) * (0.5f * GRID) - 0.5f, py = (my * nearer + 1.0f) * (0.5f * GRID) - 0.5f;
-        float left[8], right[8], upper[8], lower[8];
-        float x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], radius2[8], plane[8];
+        float8 px = ((dx * side.x + dy * side.y + dz * side.z) * nearer + 1.0f) * (0.5f * GRID) - 0.5f;
+        float8 py = ((dx * across.x + dy * across.y + dz * across.z) * nearer + 1.0f) * (0.5f * GRID) - 0.5f;
+        float left[8], right[8], upper[8], lower[8], x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], plane[8];
         int draws[8];
         vstore8(fmax(ceil(px - extent), 0.0f), 0, left);
         vstore8(fmin(floor(px + extent), GRID - 1.0f), 0, right);
         vstore8(fmax(ceil(py - extent), 0.0f), 0, upper);
         vstore8(fmin(floor(py + extent), GRID - 1.0f), 0, lower);
-        vstore8(mx, 0, x), vstore8(my, 0, y), vstore8(height, 0, z);
-        vstore8(ax, 0, axis_x), vstore8(ay, 0, axis_y), vstore8(facing, 0, axis_z);
-        vstore8(disc * disc, 0, radius2);
-        vstore8(mx * ax + my * ay + height * facing, 0, plane);
+        vstore8(dx, 0, x);
+        vstore8(dy, 0, y);
+        vstore8(dz, 0, z);
+        vstore8(nx, 0, axis_x);
+        vstore8(ny, 0, axis_y);
+        vstore8(nz, 0, axis_z);
+        vstore8(dx * nx + dy * ny + dz * nz, 0, plane);
         vstore8(drawn, 0, draws);
         for (int k = 0; k < 8; ++k) {
             if (!draws[k]) continue;
             uint slot = (uint)(at * 8 + k);
             int first = (int)left[k], last = (int)right[k], end = (int)lower[k];
+            float radius2 = node->disc[k] * node->disc[k];
+            float low_x = node->low_x[k], low_y = node->low_y[k], low_z = node->low_z[k];
+            float high_x = node->high_x[k], high_y = node->high_y[k], high_z = node->high_z[k];
             for (int j = (int)upper[k]; j <= end; ++j)
                 for (int i = first; i <= last; i += 8) {
                     int pixel = j * ROW + i;
@@ -169,8 +178,9 @@ void draw(global const WideNode* nodes, global const float* rays, float3 start, 
                     float8 ox = rx * t - x[k], oy = ry * t - y[k], oz = rz * t - z[k];
                     float8 depth = vload8(0, depths + pixel);
                     uint8 held = vload8(0, slots + pixel);
-                    int8 nearest = (t < depth) | ((t == depth) & (held > slot));
-                    int8 met = (t > 0.0f) & nearest & (ox * ox + oy * oy + oz * oz <= radius2[k]) & (rz > 0.0f);
+                    int8 met = (t > 0.0f) & ((t < depth) | ((t == depth) & (held > slot)));
+                    met &= (ox >= low_x) & (ox <= high_x) & (oy >= low_y) & (oy <= high_y);
+                    met &= (oz >= low_z) & (oz <= high_z) & (ox * ox + oy * oy + oz * oz <= radius2);
                     vstore8(select(depth, t, met), 0, depths + pixel);
                     vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
                 }
@@ -182,10 +192,9 @@ void draw(global const WideNode* nodes, global const float* rays, float3 start, 
 // and so would see everything from too near. Therefore the light is that of the point where the line from the surface
 // itself meets the plane of the disc; the pixel that shows that point knows its slot. `lifted`: from the surface to
 // the start, along the axes of the picture.
-uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float depth, float3 ray, float3 lifted,
-               float3 side, float3 across, float3 normal, float3 position, float lift) {
+uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float depth, float3 ray, float3 direction,
+               float3 lifted, float3 position, float lift) {
     float3 axis = slot_axis(nodes, slot);
-    float3 direction = side * ray.x + across * ray.y + normal * ray.z;
     float straight = dot(axis, slot_middle(nodes, slot) - position) / dot(axis, direction);
     if (!(straight > 0.0f) || fabs(straight - depth) > MOST_SHIFT * lift) return slot;
     float3 seen = ray * straight - lifted;
@@ -219,13 +228,17 @@ kernel void gather(global const WideNode* nodes, global const float* light, glob
     float3 side = cos(angle) * u + sin(angle) * v, across = cross(normal, side);
     global const float* set = rays + (point.seed % sets) * (3 * PIXELS);
 
-    float depths[PIXELS];
+    float depths[PIXELS], directions[3 * PIXELS];
     uint slots[PIXELS];
     for (int i = 0; i < PIXELS; i += 8) {
+        float8 x = vload8(0, set + i), y = vload8(0, set + PIXELS + i), z = vload8(0, set + 2 * PIXELS + i);
+        vstore8(side.x * x + across.x * y + normal.x * z, 0, directions + i);
+        vstore8(side.y * x + across.y * y + normal.y * z, 0, directions + PIXELS + i);
+        vstore8(side.z * x + across.z * y + normal.z * z, 0, directions + 2 * PIXELS + i);
         vstore8((float8)(NOTHING), 0, depths + i);
         vstore8((uint8)(EMPTY), 0, slots + i);
     }
-    draw(nodes, set, start, side, across, normal, depths, slots);
+    draw(nodes, directions, start, side, across, normal, depths, slots);
 
     float3 away = start - position, sum = (float3)(0.0f);
     float3 lifted = (float3)(dot(away, side), dot(away, across), dot(away, normal));
@@ -241,8 +254,8 @@ kernel void gather(global const WideNode* nodes, global const float* light, glob
                 ++empty;
                 continue;
             }
-            slot = seen_slot(nodes, slots, slot, depths[pixel], ray, lifted, side, across, normal, position, point.lift);
-            float3 direction = side * ray.x + across * ray.y + normal * ray.z;
+            float3 direction = (float3)(directions[pixel], directions[PIXELS + pixel], directions[2 * PIXELS + pixel]);
+            slot = seen_slot(nodes, slots, slot, depths[pixel], ray, direction, lifted, position, point.lift);
             uint back = dot(slot_axis(nodes, slot), direction) < 0.0f ? 0u : 1u;
             sum += vload3(2 * slot + back, light);
         }

@@ -10,20 +10,28 @@ namespace lucarne::gi {
 
 LUCARNE_CONST int kLeafChild = -1;  // the child is one surfel
 LUCARNE_CONST int kNoChild = -2;
+// A node is thick, and has no plane, if its thickness is over this share of its bound.
+LUCARNE_CONST float kThickNode = 0.25f;
 
 // Eight children, each property in a row of its own, so that one vector load reads it for all of them. A
 // "slot" is 8 * node + place of the child.
+//
+// Where a child is small it is drawn as a piece of the plane through its middle: what lies in the disc and in
+// the box about it. A surfel is its disc. A flat node is cut by its box: the bounds of its discs within its
+// own cell of the tree, so that cells of one wall meet without gaps and its ends are not beyond those of its
+// discs. A node of several directions has no plane: its disc faces whoever looks.
 LUCARNE_STRUCT(WideNode) {
-    float x[8], y[8], z[8];     // middle of the child, m
-    float bound[8];             // radius of the sphere about the middle that holds all discs of the child, m
-    float nx[8], ny[8], nz[8];  // unit axis: a surfel's normal, or the direction that most normals share
-    float disc[8];              // radius of the disc that stands for the child where it is small, m
-    float thickness[8];         // no disc is farther from the plane through the middle, m
-    int child[8];               // number of a node, or one of the constants above
+    float x[8], y[8], z[8];        // middle of the child, m
+    float bound[8];                // radius of the sphere about the middle that holds all discs of the child, m
+    float nx[8], ny[8], nz[8];     // unit axis: a surfel's normal, or the direction that most normals share
+    float thickness[8];            // no disc is farther from the plane through the middle, m
+    float disc[8];                 // radius of the disc, m
+    float low_x[8], low_y[8], low_z[8], high_x[8], high_y[8], high_z[8];  // the box, from the middle, m
+    int child[8];                  // number of a node, or one of the constants above
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(WideNode) == 320);
+static_assert(sizeof(WideNode) == 512);
 }  // namespace lucarne::gi
 #endif
 #endif

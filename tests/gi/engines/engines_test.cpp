@@ -8,6 +8,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "gi/engines/micro/options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/shared/brdf.h"
@@ -25,6 +26,11 @@ void fine_vpls(EngineSettings& settings) {
     settings.set(vpl::kInterleave, 1);
     settings.set(vpl::kAtlas, 2048);
 }
+void fine_buffers(EngineSettings& settings) {
+    settings.set(micro::kMicroBuffer, 24);
+    settings.set(micro::kGatherEvery, 1);
+    settings.set(micro::kRadiosityLevel, 12);
+}
 void many_paths(EngineSettings& settings) {
     settings.set(reference::kSamples, 256);
 }
@@ -41,6 +47,7 @@ struct Claims {
 };
 constexpr Claims kClaims[] = {{"direct", false, false},
                               {"vpl", true, true, .03, .015, .04, .03, fine_vpls},
+                              {"micro", true, true, .03, .015, .04, .03, fine_buffers},
                               {"reference", true, true, .03, .003, .03, .01, many_paths}};
 
 class Engines : public testing::TestWithParam<Claims> {
