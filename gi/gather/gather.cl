@@ -14,6 +14,7 @@
 // Nodes are drawn as one disc if their radius over their distance is at most this: four pixels across. Rows of eight
 // pixels cost as much as one, so smaller nodes would only add work.
 #define LARGEST_NODE (4.0f / GRID)
+#define LARGEST_THICK (.7f / GRID)
 #define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
@@ -126,7 +127,9 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         // What the discs of the child rise above its middle: those of the point's own surface lie below the start.
         float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
-        int8 large = (bound * bound > distance2 * (LARGEST_NODE * LARGEST_NODE)) & (child >= 0);
+        int8 thick = (thickness > bound * kThickNode) & (child >= 0);
+        float8 limit = select((float8)(LARGEST_NODE), (float8)(LARGEST_THICK), thick);
+        int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         if (any(go)) {
             int goes[8], children[8];
@@ -139,7 +142,6 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         }
         if (!any(drawn)) continue;
         float8 disc = vload8(0, node->disc), nearer = rsqrt(distance2);
-        int8 thick = (thickness > bound * kThickNode) & (child >= 0);
         nx = select(nx, dx * nearer, thick);
         ny = select(ny, dy * nearer, thick);
         nz = select(nz, dz * nearer, thick);

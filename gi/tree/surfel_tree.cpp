@@ -267,13 +267,10 @@ void set_child(WideNode& node, size_t k, const Summary& s, const Box* cell) {
     node.bound[k] = s.bound, node.thickness[k] = s.thickness, node.disc[k] = s.bound;
     glm::vec3 low(-kFarAway), high(kFarAway);
     if (cell) {
-        const glm::vec3 around_low = glm::max(s.box.low, cell->low) - s.middle;
-        const glm::vec3 around_high = glm::min(s.box.high, cell->high) - s.middle;
         if (s.thickness <= kThickNode * s.bound) {
-            low = around_low - s.thickness - kThinnest * s.bound;
-            high = around_high + s.thickness + kThinnest * s.bound;
-        } else {
-            node.disc[k] = std::min(s.bound, 0.5f * glm::length(around_high - around_low));
+            const float margin = s.thickness + kThinnest * s.bound;
+            low = glm::max(s.box.low, cell->low) - s.middle - margin;
+            high = glm::min(s.box.high, cell->high) - s.middle + margin;
         }
     }
     node.low_x[k] = low.x, node.low_y[k] = low.y, node.low_z[k] = low.z;
