@@ -22,7 +22,7 @@ while(waiting)
 endwhile()
 list(SORT found)
 
-set(body "// Generated from the shader files; do not edit.\n#include \"gi/device/gl/shader_texts.h\"\n\n")
+set(body "// Generated from the shader files; do not edit.\n#include \"gi/device/common/shader_texts.h\"\n\n")
 string(APPEND body "namespace lucarne::gi {\nconst std::vector<ShaderText>& shader_texts() {\n    static const std::vector<ShaderText> texts = {\n")
 set(dependencies "")
 foreach(file IN LISTS found)

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gi/device/cl/cl_device.h"
+#include "gi/device/cl/cl_choice.h"
 #include "io/core/options.h"
 
 namespace lucarne::gi {

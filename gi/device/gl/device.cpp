@@ -10,10 +10,12 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include "gi/device/cl/cl_device.h"
+#include "gi/device/common/memory_budget.h"
+#include "gi/device/common/shader_files.h"
+#include "gi/device/common/shader_source.h"
 #include "gi/device/gl/context_watch.h"
 #include "gi/device/gl/egl.h"
-#include "gi/device/gl/shader_folder.h"
-#include "gi/device/gl/shader_source.h"
 #include "io/core/log.h"
 
 namespace lucarne::gi {
@@ -66,17 +68,18 @@ struct CompiledProgram {
 struct Device::State {
     std::unique_ptr<HeadlessContext> context;  // empty if the context is a window's; destroyed last
     DeviceInfo info;
-    uint64_t cap = UINT64_MAX, used = 0;
-    bool refused = false;
+    MemoryBudget memory;
     bool native_passes = false;
     std::map<std::tuple<std::string, Defines>, CompiledProgram> programs;
-    std::optional<ShaderFolder> shaders;
-    std::string shader_problem, mistake;
+    ShaderFiles shaders;
+    std::string mistake;
     ContextWatch watch;
+    std::unique_ptr<ClDevice> opencl;  // null until it is first asked for; uses the members above
 };
 
 Device::Device() : state_(std::make_unique<State>()) {}
 Device::~Device() {
+    state_->opencl.reset();
     state_->programs.clear();
 }
 
@@ -127,28 +130,30 @@ void Device::use_native_passes(bool use) {
     state_->native_passes = use && state_->info.software;
 }
 void Device::set_memory_cap(uint64_t bytes) {
-    state_->cap = bytes;
+    state_->memory.set_cap(bytes);
 }
 uint64_t Device::memory_cap() const {
-    return state_->cap;
+    return state_->memory.cap();
 }
 uint64_t Device::memory_used() const {
-    return state_->used;
+    return state_->memory.used();
 }
 bool Device::take_refusal() {
-    return std::exchange(state_->refused, false);
+    return state_->memory.take_refusal();
 }
 void Device::finish() {
     glFinish();
+    finish_opencl();
+}
+void Device::finish_opencl() {
+    // A failure is a loss, which check() reports; any other error comes from the call that failed.
+    if (state_->opencl && state_->opencl->is_busy()) static_cast<void>(state_->opencl->finish());
 }
 Result<void> Device::check() {
     if (!state_->mistake.empty())
         return failed(std::exchange(state_->mistake, {}), "is not declared", "it is a fault of the program");
     if (!state_->watch.lost()) return {};
     return failed("graphics device", state_->watch.reason(), "see that its driver is up to date");
-}
-void Device::report_loss(std::string reason) {
-    state_->watch.report_loss(std::move(reason));
 }
 void Device::lose_after(uint32_t checks) {
     state_->watch.lose_after(checks);
@@ -161,22 +166,6 @@ Result<Buffer> Device::texels(size_t bytes, std::string_view what) {
     return make(bytes, state_->info.max_texel_bytes, what);
 }
 
-Result<void> Device::take_memory(uint64_t bytes, std::string_view what) {
-    const bool fits = bytes <= state_->cap - std::min(state_->cap, state_->used);
-    state_->refused |= !fits;
-    if (!fits)
-        return failed(std::string(what),
-                      fmt::format("{} MiB in addition to the {} MiB in use exceed the cap of {} MiB",
-                                  bytes >> 20, state_->used >> 20, state_->cap >> 20),
-                      kMemoryTodo);
-    state_->used += bytes;
-    return {};
-}
-
-void Device::give_memory_back(uint64_t bytes) {
-    state_->used -= bytes;
-}
-
 Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) {
     constexpr size_t kGrain = 16;  // a storage block ends on a vec4
     const std::string name(what);
@@ -186,7 +175,7 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
                                   state_->info.renderer, most >> 20),
                       kMemoryTodo);
     bytes = std::max((bytes + kGrain - 1) / kGrain * kGrain, kGrain);
-    LUCARNE_TRY(take_memory(bytes, what));
+    LUCARNE_TRY(state_->memory.take(bytes, what));
     clear_errors();
     Buffer made;
     glCreateBuffers(1, &made.id_);
@@ -194,7 +183,7 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
     const GLbitfield mapped = state_->info.software ? GL_MAP_READ_BIT | GL_MAP_WRITE_BIT : 0;
     glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT | mapped);
     if (glGetError() != GL_NO_ERROR) {  // `made` returns nothing to the budget: its device_ is null
-        give_memory_back(bytes);
+        state_->memory.give_back(bytes);
         return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kMemoryTodo);
     }
     made.device_ = this;
@@ -209,6 +198,14 @@ Result<void> Device::reserve(Buffer& target, size_t bytes, std::string_view what
     return {};
 }
 
+Result<ClDevice*> Device::opencl() {
+    State& state = *state_;
+    if (state.opencl) return state.opencl.get();
+    auto report_loss = [&state](std::string why) { state.watch.report_loss(std::move(why)); };
+    LUCARNE_ASSIGN(state.opencl, ClDevice::open({state.memory, state.shaders, std::move(report_loss)}));
+    return state.opencl.get();
+}
+
 Result<const Program*> Device::program(std::string_view path, const Defines& defines) {
     std::tuple<std::string, Defines> key(path, defines);
     if (const auto found = state_->programs.find(key); found != state_->programs.end())
@@ -219,56 +216,55 @@ Result<const Program*> Device::program(std::string_view path, const Defines& def
         const std::string text = std::move(source.text);
         return CompiledProgram{text, std::unique_ptr<Program>(new Program(*this, path, text, id))};
     };
-    auto made = make(state_->shaders ? state_->shaders->texts() : shader_texts());
-    if (!made && state_->shaders) {
-        note_shader_problem(made.error());
-        made = make(shader_texts());
+    auto made = make(state_->shaders.texts());
+    if (!made && state_->shaders.from_folder()) {
+        state_->shaders.note_problem(made.error());
+        made = make(state_->shaders.embedded());
     }
     if (!made) return tl::make_unexpected(std::move(made).error());
     return state_->programs.emplace(std::move(key), std::move(*made)).first->second.program.get();
 }
 
+void Device::add_shader(std::string path, std::string text) {
+    state_->shaders.add(std::move(path), std::move(text));
+}
+
 void Device::use_shader_folder(const std::filesystem::path& folder) {
-    state_->shaders.emplace(folder);
+    state_->shaders.use_folder(folder);
     state_->programs.clear();
-    state_->shader_problem.clear();
+    if (state_->opencl) state_->opencl->reload_programs();
 }
 
 void Device::reload_shaders() {
-    if (!state_->shaders) return;
-    state_->shaders->read();
-    state_->shader_problem.clear();
+    if (!state_->shaders.from_folder()) return;
+    state_->shaders.read_again();
     for (auto& [key, compiled] : state_->programs) {
         const auto& [path, defines] = key;
-        auto source = shader_source(path, defines, state_->shaders->texts());
+        auto source = shader_source(path, defines, state_->shaders.texts());
         if (source && source->text == compiled.text) continue;
         const Result<GLuint> id =
             source ? compile(path, *source) : tl::make_unexpected(std::move(source).error());
         if (!id) {
-            note_shader_problem(id.error());
+            state_->shaders.note_problem(id.error());
             continue;
         }
         compiled.text = std::move(source->text);
         compiled.program.reset(new Program(*this, path, compiled.text, *id));
     }
+    if (state_->opencl) state_->opencl->reload_programs();
 }
 
 const std::string& Device::shader_problem() const {
-    return state_->shader_problem;
+    return state_->shaders.problem();
 }
 
 void Device::note_unknown_uniform(std::string_view path, std::string_view uniform) {
     const std::string what = fmt::format("shader {}: uniform {}", path, uniform);
     // Whoever edits shaders may remove a uniform for a while.
-    if (state_->shaders)
-        note_shader_problem(Error{ErrorKind::failed, what, "is not declared", ""});
+    if (state_->shaders.from_folder())
+        state_->shaders.note_problem(Error{ErrorKind::failed, what, "is not declared", ""});
     else if (state_->mistake.empty())
         state_->mistake = what;
-}
-
-void Device::note_shader_problem(const Error& error) {
-    log::warn("{}", error.line());
-    if (state_->shader_problem.empty()) state_->shader_problem = error.line();
 }
 
 Buffer::Buffer(Buffer&& other) noexcept {
@@ -287,7 +283,7 @@ Buffer::~Buffer() {
     for (const uint32_t texture : textures_)
         if (texture) glDeleteTextures(1, &texture);
     if (id_) glDeleteBuffers(1, &id_);
-    if (device_) device_->state_->used -= bytes_;
+    if (device_) device_->state_->memory.give_back(bytes_);
 }
 
 void Buffer::bind(uint32_t binding) const {

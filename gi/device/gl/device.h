@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "gi/device/common/shader_source.h"
 #include "io/core/error.h"
 
 namespace lucarne::gi {
@@ -25,6 +26,7 @@ struct DeviceInfo {
     uint64_t max_texel_bytes = 0;   ///< largest buffer that shaders read only as texels of four words
 };
 
+class ClDevice;
 class Device;
 
 /// How a shader reads a buffer's words: through `usamplerBuffer`, floats through `samplerBuffer`.
@@ -133,8 +135,6 @@ class Program {
     std::map<std::string, Uniform, std::less<>> uniforms_;
 };
 
-using Defines = std::vector<std::pair<std::string, std::string>>;
-
 /// One OpenGL 4.5 core context and everything made in it. Use it from one thread. Whatever a program reads
 /// or writes is a shader storage buffer, pictures included.
 class Device {
@@ -155,16 +155,13 @@ class Device {
     bool native_passes() const;
     /// Turns native passes off, or on again where the device supports them.
     void use_native_passes(bool use);
-    /// Sets how many bytes all buffers together may take; an allocation beyond that is an error.
+    /// Sets how many bytes all buffers, of OpenGL and OpenCL together, may take; an allocation beyond that is
+    /// an error.
     void set_memory_cap(uint64_t bytes);
     uint64_t memory_cap() const;
     uint64_t memory_used() const;
     /// Returns whether the cap has refused a buffer since the last call.
     bool take_refusal();
-
-    /// Counts memory of another device under the same cap. Errors: over the cap.
-    Result<void> take_memory(uint64_t bytes, std::string_view what);
-    void give_memory_back(uint64_t bytes);
 
     /// Returns an uninitialised buffer. Errors: over the cap, over max_buffer_bytes, out of device memory.
     Result<Buffer> buffer(size_t bytes, std::string_view what);
@@ -178,33 +175,41 @@ class Device {
     /// the compiler's first message.
     Result<const Program*> program(std::string_view path, const Defines& defines = {});
 
-    /// Compiles programs from the files in `folder`, which stands for the project's root, for developers of
-    /// shaders; LUCARNE_SHADERS sets it for every device. If a file does not compile, a warning and
-    /// shader_problem() report it and the embedded file is used instead. Passes that run in C++ do not read
-    /// their shaders: set LUCARNE_NATIVE=0, too.
+    /// Returns the OpenCL device (gi/device/cl/cl_device.h) that all engines share. The first call starts it,
+    /// which takes most of a second; it is destroyed with this device, after everything made on it. Errors:
+    /// there is none, or none of the name in LUCARNE_CL_DEVICE.
+    Result<ClDevice*> opencl();
+
+    /// Adds a file to the embedded shaders and OpenCL programs, for engines and kernels of tests. A file
+    /// added again replaces the earlier one, but not the programs compiled from it.
+    void add_shader(std::string path, std::string text);
+    /// Compiles shaders and OpenCL programs from the files in `folder`, which stands for the project's root,
+    /// for developers of shaders; LUCARNE_SHADERS sets it for every device. If a file does not compile, a
+    /// warning and shader_problem() report it and the embedded file is used instead. Passes that run in C++
+    /// do not read their shaders: set LUCARNE_NATIVE=0, too.
     void use_shader_folder(const std::filesystem::path& folder);
     /// Reads the folder again and compiles programs whose text has changed. If that fails the last good
-    /// program stays. Do not call it while a Program returned by program() is in use.
+    /// program stays. Do not call it while a Program returned by program() is in use; kernels may be kept.
     void reload_shaders();
     /// Returns the first compile error since the folder was last read, with file and line; empty if there is
     /// none.
     const std::string& shader_problem() const;
 
-    void finish();  ///< waits until all work is done
+    /// Waits until all work is done, that of OpenCL too; check() tells whether it failed.
+    void finish();
+    /// Waits for OpenCL's work only. Does nothing if none was queued.
+    void finish_opencl();
 
-    /// Errors: the driver has lost or reset the context, or report_loss() was called. Then everything made
+    /// Errors: the driver has lost or reset the context, or OpenCL its device. Then everything made
     /// in it is gone, its last results are undefined, and another device has to replace it. Also an error: a
     /// program was given a uniform that its text does not declare, which is a bug of the caller.
     Result<void> check();
-    /// Reports that a device that works with this one (OpenCL) was lost: both are replaced together.
-    void report_loss(std::string reason);
     /// For tests: check() fails from its `checks`th call on.
     void lose_after(uint32_t checks);
 
  private:
     Device();
     Result<Buffer> make(size_t bytes, uint64_t most, std::string_view what);
-    void note_shader_problem(const Error& error);
     void note_unknown_uniform(std::string_view path, std::string_view uniform);
     friend class Buffer;
     friend class Program;

@@ -30,6 +30,7 @@ void PassTimes::begin(std::string name) {
     if (clock_ == Clock::wall) {
         device_.finish();
     } else {
+        device_.finish_opencl();
         if (queries_.size() < 2 * (passes_.size() + 1)) {
             queries_.resize(queries_.size() + 2);
             glCreateQueries(GL_TIMESTAMP, 2, &queries_[queries_.size() - 2]);
@@ -40,10 +41,12 @@ void PassTimes::begin(std::string name) {
 }
 
 void PassTimes::end() {
-    if (clock_ == Clock::wall)
+    if (clock_ == Clock::wall) {
         device_.finish();
-    else
+    } else {
         glQueryCounter(queries_[2 * passes_.size() + 1], GL_TIMESTAMP);
+        device_.finish_opencl();
+    }
     passes_.push_back({std::move(name_), seconds_now() - start_});
 }
 

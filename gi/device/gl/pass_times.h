@@ -11,6 +11,8 @@ namespace lucarne::gi {
 /// Times the passes of a frame. With timer queries a pass takes the longer of what the host needed to issue
 /// it and what the device needed to run it, and passes may overlap. Without them (timers of software devices
 /// return wrong values) the device finishes before and after each pass, and the clock on the wall counts.
+/// OpenCL's work, which OpenGL's queries do not see, is waited for before and after each pass by either
+/// clock, so that it counts in the pass that queued it.
 class PassTimes {
  public:
     enum class Clock { queries, wall };

@@ -23,7 +23,8 @@ class OpenClEngine final : public Engine {
  protected:
     Result<void> prepare(Frame& frame) override {
         if (opencl_) return {};
-        LUCARNE_ASSIGN(opencl_, ClDevice::open(frame.gl.device));
+        LUCARNE_ASSIGN(opencl_, frame.gl.device.opencl());
+        frame.gl.device.add_shader("fill.cl", kFill);
         if (const auto calls = opencl_losses().next()) opencl_->lose_after(*calls);
         return {};
     }
@@ -31,16 +32,16 @@ class OpenClEngine final : public Engine {
         const uint32_t pixels = frame.camera.width * frame.camera.height;
         std::vector<glm::vec4> radiance(pixels);
         LUCARNE_TRY(opencl_->reserve(pixels_, pixels * sizeof(glm::vec4), "radiance"));
-        LUCARNE_ASSIGN(const ClKernel* fill, opencl_->kernel("fill.cl", "fill", {}, {{"fill.cl", kFill}}));
-        LUCARNE_TRY(fill->run(pixels, 0, pixels_, pixels));
+        LUCARNE_ASSIGN(const ClKernel* fill, opencl_->kernel("fill.cl", "fill"));
+        LUCARNE_TRY(fill->run(ClRange(pixels), pixels_, pixels));
         LUCARNE_TRY(pixels_.download(0, std::as_writable_bytes(std::span(radiance))));
         upload_radiance(frame, radiance);
         return {};
     }
 
  private:
-    std::unique_ptr<ClDevice> opencl_;
-    ClBuffer pixels_;  // destroyed before its device
+    ClDevice* opencl_ = nullptr;
+    ClBuffer pixels_;
 };
 
 }  // namespace

@@ -32,19 +32,20 @@ kernel void sum(global const FlatSurfel* surfels, uint count, uint run, global f
 }
 )";
 
-/// The embedded texts and one more.
-std::vector<ShaderText> texts_with(const char* text) {
-    std::vector<ShaderText> texts = shader_texts();
-    texts.push_back({"test.cl", text});
-    return texts;
-}
-
 using ClDeviceTest = OnOpenCl;
 
 TEST_F(ClDeviceTest, SaysWhatItIs) {
     EXPECT_FALSE(opencl->info().name.empty());
     EXPECT_GT(opencl->info().units, 0u);
     EXPECT_GT(opencl->info().max_buffer_bytes, uint64_t{1} << 20);
+    EXPECT_GE(opencl->info().local_memory, 32u << 10) << "what OpenCL's full profile demands";
+    EXPECT_GE(opencl->info().max_group_size, 1u);
+}
+
+TEST_F(ClDeviceTest, IsOneForAllEnginesOfAnOpenGlDevice) {
+    const auto again = device->opencl();
+    ASSERT_TRUE(again);
+    EXPECT_EQ(*again, opencl);
 }
 
 TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
@@ -62,9 +63,10 @@ TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
     constexpr uint32_t kRun = 100;
     const uint32_t parts = (static_cast<uint32_t>(count) + kRun - 1) / kRun;
     ASSERT_TRUE(opencl->reserve(areas, parts * sizeof(float), "sums"));
-    const auto kernel = opencl->kernel("test.cl", "sum", {}, texts_with(kSum));
+    device->add_shader("sum.cl", kSum);
+    const auto kernel = opencl->kernel("sum.cl", "sum");
     ASSERT_TRUE(kernel) << kernel.error().line();
-    const auto ran = (*kernel)->run(parts, 64, surfels, static_cast<uint32_t>(count), kRun, areas);
+    const auto ran = (*kernel)->run(ClRange(parts, 64), surfels, static_cast<uint32_t>(count), kRun, areas);
     ASSERT_TRUE(ran) << ran.error().line();
     EXPECT_TRUE(opencl->finish());
     std::vector<float> sums(parts);
@@ -102,14 +104,16 @@ TEST_F(ClDeviceTest, BuffersGoThereAndBackUnchanged) {
 }
 
 TEST_F(ClDeviceTest, ErrorsOfKernelsNameFileAndLine) {
-    const auto broken = opencl->kernel(
-        "test.cl", "sum", {},
-        texts_with("#include \"gi/shared/flat_surfel.h\"\n\nkernel void sum() {\n  none();\n}\n"));
+    device->add_shader("sum.cl",
+                       "#include \"gi/shared/flat_surfel.h\"\n\nkernel void sum() {\n  none();\n}\n");
+    const auto broken = opencl->kernel("sum.cl", "sum");
     ASSERT_FALSE(broken);
-    EXPECT_THAT(broken.error().why, HasSubstr("test.cl:4:"));
-    const auto missing = opencl->kernel("test.cl", "none", {}, texts_with(kSum));
+    EXPECT_THAT(broken.error().why, HasSubstr("sum.cl:4:"));
+    device->add_shader("sum.cl", kSum);
+    const auto missing = opencl->kernel("sum.cl", "none");
     ASSERT_FALSE(missing);
-    EXPECT_EQ(missing.error().what, "kernel none of test.cl");
+    EXPECT_EQ(missing.error().what, "kernel none of sum.cl");
+    EXPECT_TRUE(opencl->kernel("sum.cl", "sum"));
     EXPECT_FALSE(opencl->kernel("nowhere.cl", "sum"));
 }
 
@@ -133,14 +137,19 @@ TEST_F(ClDeviceTest, MemoryCountsUnderTheCapOfBoth) {
 
 constexpr const char* kNumber =
     "kernel void number(global uint* words, uint from) { words[get_global_id(0)] = from + get_global_id(0); "
-    "}\n";
+    "}\n"
+    "kernel __attribute__((reqd_work_group_size(8, 1, 1))) void eights(global uint* words) {}\n";
 
 struct OpenClLoss : ClDeviceTest {
+    void SetUp() override {
+        ClDeviceTest::SetUp();
+        if (device) device->add_shader("number.cl", kNumber);
+    }
     /// Returns the last of 64 words that a kernel numbers from 7 on.
     Result<uint32_t> last_word() {
         LUCARNE_ASSIGN(ClBuffer words, opencl->buffer(256, "words"));
-        LUCARNE_ASSIGN(const ClKernel* kernel, opencl->kernel("test.cl", "number", {}, texts_with(kNumber)));
-        LUCARNE_TRY(kernel->run(64, 0, words, 7u));
+        LUCARNE_ASSIGN(const ClKernel* kernel, opencl->kernel("number.cl", "number"));
+        LUCARNE_TRY(kernel->run(ClRange(64), words, 7u));
         std::vector<uint32_t> numbers(64);
         LUCARNE_TRY(words.download(0, std::as_writable_bytes(std::span(numbers))));
         return numbers.back();
@@ -162,24 +171,32 @@ TEST_F(OpenClLoss, StaysAndTheOpenGlDeviceReportsIt) {
     EXPECT_THAT(reported.error().why, HasSubstr("OpenCL: the device " + opencl->info().name + " was lost"));
     EXPECT_FALSE(opencl->finish()) << "what is lost does not come back";
     EXPECT_FALSE(opencl->buffer(16, "words"));
-    EXPECT_FALSE(opencl->kernel("test.cl", "number", {}, texts_with(kNumber)));
+    EXPECT_FALSE(opencl->kernel("number.cl", "number"));
     EXPECT_FALSE(device->check());
 
-    opencl.reset();
-    OnDevice::SetUp();
+    SetUp();  // makes both devices again
     lost_on_purpose = false;
-    auto opened = ClDevice::open(*device);
-    ASSERT_TRUE(opened) << opened.error().line();
-    opencl = std::move(*opened);
     EXPECT_EQ(last_word().value_or(0), 70u);
+}
+
+TEST_F(OpenClLoss, IsNoticedWhileTheOpenGlDeviceFinishesAFrame) {
+    lost_on_purpose = true;
+    auto words = opencl->buffer(256, "words");
+    const auto kernel = opencl->kernel("number.cl", "number");
+    ASSERT_TRUE(words && kernel);
+    opencl->lose_after(2);
+    ASSERT_TRUE((*kernel)->run(ClRange(64), *words, 7u));
+    EXPECT_TRUE(device->check());
+    device->finish();
+    EXPECT_FALSE(device->check());
 }
 
 TEST_F(OpenClLoss, OtherErrorsAreNotTakenForOne) {
     auto words = opencl->buffer(256, "words");
-    const auto kernel = opencl->kernel("test.cl", "number", {}, texts_with(kNumber));
+    const auto kernel = opencl->kernel("number.cl", "eights");
     ASSERT_TRUE(words && kernel);
-    EXPECT_FALSE((*kernel)->run(1, size_t{1} << 30, *words, 7u)) << "no device has groups of this size";
-    EXPECT_FALSE(opencl->kernel("test.cl", "none", {}, texts_with(kNumber)));
+    EXPECT_FALSE((*kernel)->run(ClRange(4, 4), *words)) << "its groups have 8 work-items";
+    EXPECT_FALSE(opencl->kernel("number.cl", "none"));
     EXPECT_EQ(last_word().value_or(0), 70u);
     EXPECT_TRUE(device->check());
 }
@@ -196,9 +213,10 @@ TEST_F(OpenClBesideOpenGl, ChangesNoPicture) {
         return light_up(*device, **make_engine("direct"), cloud, camera, options).radiance;
     };
     const auto before = picture();
-    auto opened = ClDevice::open(*device);
+    device->add_shader("sum.cl", kSum);
+    const auto opened = device->opencl();
     ASSERT_TRUE(opened) << opened.error().line();
-    ASSERT_TRUE((*opened)->kernel("test.cl", "sum", {}, texts_with(kSum)));
+    ASSERT_TRUE((*opened)->kernel("sum.cl", "sum"));
     EXPECT_TRUE(picture() == before);
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <memory>
-
 #include "gi/device/cl/cl_device.h"
 #include "tests/gi/on_device.h"
 
@@ -13,15 +11,11 @@ class OnOpenCl : public OnDevice {
     void SetUp() override {
         OnDevice::SetUp();
         if (!device) return;
-        auto opened = ClDevice::open(*device);
+        const auto opened = device->opencl();
         ASSERT_TRUE(opened) << opened.error().line();
-        opencl = std::move(*opened);
+        opencl = *opened;
     }
-    void TearDown() override {
-        opencl.reset();
-        OnDevice::TearDown();
-    }
-    std::unique_ptr<ClDevice> opencl;
+    ClDevice* opencl = nullptr;
 };
 
 }  // namespace lucarne::gi

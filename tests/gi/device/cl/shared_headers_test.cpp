@@ -41,9 +41,8 @@ class SharedHeadersInOpenCl : public OnOpenCl {
         for (const std::string& header : headers) source += "#include \"" + header + "\"\n";
         source += text;
         const std::string name = "test" + std::to_string(++compiled_) + ".cl";
-        std::vector<ShaderText> texts = shader_texts();
-        texts.push_back({name, source});
-        return opencl->kernel(name, "test", {}, texts);
+        device->add_shader(name, source);
+        return opencl->kernel(name, "test");
     }
 
  private:
@@ -94,7 +93,7 @@ TEST_F(SharedHeadersInOpenCl, StructsHaveTheSameLayoutAsOnTheHost) {
     ASSERT_TRUE(kernel) << kernel.error().line();
     auto out = opencl->buffer(expected.size() * sizeof(uint32_t), "layouts");
     ASSERT_TRUE(out);
-    ASSERT_TRUE((*kernel)->run(1, 1, *out));
+    ASSERT_TRUE((*kernel)->run(ClRange(1, 1), *out));
     std::vector<uint32_t> found(expected.size());
     ASSERT_TRUE(out->download(0, std::as_writable_bytes(std::span(found))));
     EXPECT_EQ(found, expected);
@@ -212,7 +211,7 @@ kernel void test(global const float4* in, uint items, global float4* out) {
     auto to = opencl->buffer(size_t{kItems} * kSamples * sizeof(vec4), "results");
     ASSERT_TRUE(from && to);
     ASSERT_TRUE(from->upload(0, std::as_bytes(std::span(in))));
-    const auto ran = (*kernel)->run(kItems, 64, *from, kItems, *to);
+    const auto ran = (*kernel)->run(ClRange(kItems, 64), *from, kItems, *to);
     ASSERT_TRUE(ran) << ran.error().line();
     std::vector<vec4> found(size_t{kItems} * kSamples);
     ASSERT_TRUE(to->download(0, std::as_writable_bytes(std::span(found))));

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "gi/device/common/shader_source.h"
 #include "gi/device/gl/pass_times.h"
-#include "gi/device/gl/shader_source.h"
 #include "tests/gi/on_device.h"
 
 namespace lucarne::gi {

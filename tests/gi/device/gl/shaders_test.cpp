@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/device/gl/shader_source.h"
-#include "gi/device/gl/shader_texts.h"
+#include "gi/device/common/shader_source.h"
+#include "gi/device/common/shader_texts.h"
 #include "tests/viewer/program.h"
 
 namespace lucarne::gi {

@@ -1,4 +1,4 @@
-#include "gi/device/gl/shader_source.h"
+#include "gi/device/common/shader_source.h"
 
 #include <algorithm>
 #include <cstdio>

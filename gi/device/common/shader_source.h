@@ -2,12 +2,16 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "gi/device/gl/device.h"
-#include "gi/device/gl/shader_texts.h"
+#include "gi/device/common/shader_texts.h"
+#include "io/core/error.h"
 
 namespace lucarne::gi {
+
+/// Macros of a shader or an OpenCL program: names and values.
+using Defines = std::vector<std::pair<std::string, std::string>>;
 
 /// A shader with its includes resolved. `files[i]` is the file that `#line n i` refers to.
 struct ShaderSource {

@@ -1,0 +1,71 @@
+#include "gi/device/cl/cl_buffer.h"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "gi/device/cl/cl_api.h"
+
+namespace lucarne::gi {
+
+Result<ClBuffer> ClBuffer::make(ClContext& context, size_t bytes, std::string_view what) {
+    constexpr const char* kTodo = "raise --device-memory, or lower --points";
+    LUCARNE_TRY(context.usable());
+    bytes = std::max<size_t>(bytes, 16);
+    const ClDeviceInfo& info = context.info();
+    if (bytes > info.max_buffer_bytes)
+        return failed(std::string(what),
+                      fmt::format("{} MiB are more than a buffer of {} holds ({} MiB)", bytes >> 20,
+                                  info.name, info.max_buffer_bytes >> 20),
+                      kTodo);
+    LUCARNE_TRY(context.memory().take(bytes, what));
+    cl_int problem = CL_SUCCESS;
+    const cl_mem memory = clCreateBuffer(context.context(), CL_MEM_READ_WRITE, bytes, nullptr, &problem);
+    if (problem != CL_SUCCESS) {
+        context.memory().give_back(bytes);
+        LUCARNE_TRY(context.check_loss(problem));
+        return failed(std::string(what),
+                      fmt::format("the OpenCL device has no {} MiB of memory left", bytes >> 20), kTodo);
+    }
+    ClBuffer made;
+    made.context_ = &context;
+    made.memory_ = memory;
+    made.bytes_ = bytes;
+    return made;
+}
+
+ClBuffer& ClBuffer::operator=(ClBuffer&& other) noexcept {
+    std::swap(context_, other.context_);
+    std::swap(memory_, other.memory_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+}
+
+ClBuffer::~ClBuffer() {
+    if (!memory_) return;
+    clReleaseMemObject(memory_);  // the driver keeps it until queued work that uses it is done
+    context_->memory().give_back(bytes_);
+}
+
+Result<void> ClBuffer::upload(size_t offset, std::span<const std::byte> data) {
+    if (offset > bytes_ || data.size() > bytes_ - offset)
+        return failed("OpenCL", "an upload is larger than its buffer");
+    if (data.empty()) return {};
+    LUCARNE_TRY(context_->usable());
+    context_->set_busy(false);  // the queue is in order, so all earlier work is done as well
+    return context_->answered("upload", clEnqueueWriteBuffer(context_->queue(), memory_, CL_TRUE, offset,
+                                                             data.size(), data.data(), 0, nullptr, nullptr));
+}
+
+Result<void> ClBuffer::download(size_t offset, std::span<std::byte> out) const {
+    if (offset > bytes_ || out.size() > bytes_ - offset)
+        return failed("OpenCL", "a download is larger than its buffer");
+    if (out.empty()) return {};
+    LUCARNE_TRY(context_->usable());
+    context_->set_busy(false);
+    return context_->answered("download", clEnqueueReadBuffer(context_->queue(), memory_, CL_TRUE, offset,
+                                                              out.size(), out.data(), 0, nullptr, nullptr));
+}
+
+}  // namespace lucarne::gi
