@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
-#include <glm/packing.hpp>
 
 #include "gi/bounce_options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/reference/path_tracer.h"
 #include "gi/host_frame.h"
-#include "gi/shared/surfel_code.h"
+#include "gi/shared/gbuffer.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
 
@@ -28,24 +27,19 @@ using tracing::SurfelTracer;
 /// reference differs from the others in transport and not in visibility.
 std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTexel> texels) {
     std::vector<Start> starts(texels.size());
-    const vec3 forward(camera.forward), right(camera.right), up(camera.up), eye(camera.origin);
     parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const GBufferTexel& texel = texels[i];
-            const glm::vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
-            const glm::vec2 ndc = view_ndc(camera, pixel + .5f);
-            const vec3 across = right * ndc.x - up * ndc.y;
-            const bool parallel = camera.projection == kOrthographic;
-            const vec3 ray = parallel ? forward : forward + across, from = parallel ? eye + across : eye;
+            const vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
             Start& start = starts[i];
-            start.viewer = -glm::normalize(ray);
+            start.viewer = -glm::normalize(view_ray(camera, pixel + 0.5f));
             if (!(texel.depth > 0)) continue;
-            start.position = from + texel.depth * ray;
-            start.normal = decode_octahedral(texel.normal);
-            start.albedo = decode_albedo(texel.albedo);
+            start.position = texel_position(camera, pixel, texel);
+            start.normal = texel_normal(texel);
+            start.albedo = texel_albedo(texel);
             // A half float may have become 0 or infinite, but there is a surface.
-            start.radius = std::clamp(glm::unpackHalf2x16(texel.material).y, 1e-7f, 65504.0f);
-            start.material = texel.material & 0xffffu;
+            start.radius = std::clamp(texel_radius(texel), 1e-7f, 65504.0f);
+            start.material = texel_material(texel);
         }
     });
     return starts;
