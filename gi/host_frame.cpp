@@ -4,10 +4,9 @@
 #include <cassert>
 
 #include <glm/geometric.hpp>
-#include <glm/packing.hpp>
 
 #include "gi/gl_frame.h"
-#include "gi/shared/surfel_code.h"
+#include "gi/shared/gbuffer.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi {
@@ -24,24 +23,19 @@ std::vector<GBufferTexel> download_gbuffer(const Frame& frame) {
 
 std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels) {
     std::vector<SurfacePoint> points(texels.size());
-    const vec3 forward(camera.forward), right(camera.right), up(camera.up), eye(camera.origin);
     parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const GBufferTexel& texel = texels[i];
-            const glm::vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
-            const glm::vec2 ndc = view_ndc(camera, pixel + .5f);
-            const vec3 across = right * ndc.x - up * ndc.y;
-            const bool parallel = camera.projection == kOrthographic;
-            const vec3 ray = parallel ? forward : forward + across, from = parallel ? eye + across : eye;
+            const vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
             SurfacePoint& point = points[i];
-            point.viewer = -glm::normalize(ray);
+            point.viewer = -glm::normalize(view_ray(camera, pixel + 0.5f));
             if (!(texel.depth > 0)) continue;
-            point.position = from + texel.depth * ray;
-            point.normal = decode_octahedral(texel.normal);
-            point.albedo = decode_albedo(texel.albedo);
+            point.position = texel_position(camera, pixel, texel);
+            point.normal = texel_normal(texel);
+            point.albedo = texel_albedo(texel);
             // A half float may have become 0 or infinite, but there is a surface.
-            point.radius = std::clamp(glm::unpackHalf2x16(texel.material).y, 1e-7f, 65504.0f);
-            point.material = texel.material & 0xffffu;
+            point.radius = std::clamp(texel_radius(texel), 1e-7f, 65504.0f);
+            point.material = texel_material(texel);
         }
     });
     return points;

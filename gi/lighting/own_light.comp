@@ -3,7 +3,7 @@ layout(local_size_x = 64) in;
 #include "gi/lighting/bindings.h"
 #include "gi/shared/many_threads.glsl"
 #include "gi/shared/environment.h"
-#include "gi/shared/gbuffer.glsl"
+#include "gi/shared/gbuffer.h"
 #include "gi/shared/material.h"
 
 layout(std430, binding = kBindCameraTexels) readonly buffer CameraTexels { GBufferTexel texels[]; };

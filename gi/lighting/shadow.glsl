@@ -1,19 +1,10 @@
 // Tests whether a light view (gi/lighting/light_view.h) sees a point. The G-buffer of the view serves as the shadow
 // map.
 #include "gi/lighting/bindings.h"
-#include "gi/shared/gbuffer.glsl"
+#include "gi/shared/gbuffer.h"
 
 layout(std430, binding = kBindLightTexels) readonly buffer LightTexels { GBufferTexel light_texels[]; };
 uniform CameraView light_view;
-
-// Projects a point into the light view: returns its place in texels (centres at .5) and sets its depth.
-vec2 light_pixel(vec3 position, out float depth) {
-    vec3 offset = position - light_view.origin.xyz;
-    depth = dot(offset, light_view.forward.xyz);
-    vec2 ndc = vec2(dot(offset, light_view.right.xyz) / dot(light_view.right.xyz, light_view.right.xyz),
-                    -dot(offset, light_view.up.xyz) / dot(light_view.up.xyz, light_view.up.xyz)) / depth;
-    return (0.5 * ndc + 0.5) * vec2(light_view.width, light_view.height);
-}
 
 GBufferTexel light_texel(inout ivec2 pixel) {
     pixel = clamp(pixel, ivec2(0), ivec2(light_view.width, light_view.height) - 1);
@@ -26,7 +17,7 @@ GBufferTexel light_texel(inout ivec2 pixel) {
 // blurs together.
 float shadow_lift(vec3 position, float radius) {
     float depth;
-    ivec2 pixel = ivec2(light_pixel(position, depth));
+    ivec2 pixel = ivec2(view_place(light_view, position, depth));
     float footprint = depth * 2.0 * length(light_view.right.xyz) / float(light_view.width);
     float lift = max(radius, 1.5 * footprint);
     float caster_radius = texel_radius(light_texel(pixel));
@@ -54,10 +45,10 @@ bool texel_blocks(ivec2 pixel, vec3 lifted, float depth, float radius) {
 // surfel of the point.
 float spot_visibility(vec3 position, vec3 normal, float radius) {
     float depth;
-    light_pixel(position, depth);
+    view_place(light_view, position, depth);
     if (depth <= 0.0) return 0.0;
     vec3 lifted = position + normal * shadow_lift(position, radius);
-    vec2 at = light_pixel(lifted, depth) - 0.5;
+    vec2 at = view_place(light_view, lifted, depth) - 0.5;
     if (depth <= 0.0) return 0.0;
     ivec2 low = ivec2(floor(at));
     vec2 share = at - vec2(low);

@@ -19,6 +19,8 @@ const uint kBindOther = 2u;   // the other engine's radiance, or its picture
 // Texture units.
 const uint kUnitGBuffer = 3u;
 
+// highlights.comp counts blocks of this many pixels along a side.
+const uint kBlockSide = 4u;
 // The bins of highlights.comp: 16 stops below and above the log-average.
 const int kBinsPerStop = 8;
 const int kBrightnessBins = 256;

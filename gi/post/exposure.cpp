@@ -63,7 +63,8 @@ Result<double> highlights(Device& device, const Buffer& radiance, const GBuffer&
     program->set("height", gbuffer.height);
     program->set_block("balance", std::array<float, 4>{balance.x, balance.y, balance.z, 0.0f});
     program->set("log_mean", static_cast<float>(log_mean));
-    program->dispatch((gbuffer.width + 3) / 4 * ((gbuffer.height + 3) / 4));
+    const auto blocks = [](uint32_t pixels) { return (pixels + post::kBlockSide - 1) / post::kBlockSide; };
+    program->dispatch(blocks(gbuffer.width) * blocks(gbuffer.height));
     const auto counts = counted.download_all<uint32_t>(post::kBrightnessBins);
     uint64_t all = 0;
     for (const uint32_t count : counts) all += count;

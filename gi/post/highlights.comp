@@ -17,8 +17,8 @@ shared uint group_counts[kBrightnessBins];
 void count_block(uvec2 first) {
     vec3 sum = vec3(0.0);
     uint seen = 0u;
-    for (uint y = first.y; y < min(first.y + 4u, height); ++y)
-        for (uint x = first.x; x < min(first.x + 4u, width); ++x) {
+    for (uint y = first.y; y < min(first.y + kBlockSide, height); ++y)
+        for (uint x = first.x; x < min(first.x + kBlockSide, width); ++x) {
             uint at = y * width + x;
             vec3 light = radiance[at].rgb;
             if (texelFetch(gbuffer_texels, int(at)).x == 0u || any(isnan(light)) || any(isinf(light))) continue;
@@ -36,8 +36,9 @@ void count_block(uvec2 first) {
 void main() {
     for (uint bin = gl_LocalInvocationIndex; bin < kBrightnessBins; bin += 64u) group_counts[bin] = 0u;
     barrier();
-    uint across = (width + 3u) / 4u, down = (height + 3u) / 4u, block = thread_number();
-    if (block < across * down) count_block(4u * uvec2(block % across, block / across));
+    uint across = (width + kBlockSide - 1u) / kBlockSide, down = (height + kBlockSide - 1u) / kBlockSide;
+    uint block = thread_number();
+    if (block < across * down) count_block(kBlockSide * uvec2(block % across, block / across));
     barrier();
     for (uint bin = gl_LocalInvocationIndex; bin < kBrightnessBins; bin += 64u)
         if (group_counts[bin] != 0u) atomicAdd(counts[bin], group_counts[bin]);

@@ -1,9 +1,10 @@
 // Adds the small discs to the sums of the pixels that they cover, one invocation a disc and a workgroup a block.
 // Only blocks of which a disc took a pixel are drawn; the others are hidden.
-layout(local_size_x = 256) in;
 #include "gi/raster/blend.glsl"
 #include "gi/raster/ellipse.glsl"
 #include "gi/raster/queues.h"
+
+layout(local_size_x = kBlockSurfels) in;
 
 layout(std430, binding = kBindBlocks) readonly buffer Blocks { uint seen_blocks[]; };
 layout(std430, binding = kBindQueues) readonly buffer Queues { QueueHeader queues; };
@@ -22,9 +23,7 @@ Ellipse widened(Ellipse e, float reach) {
     return e;
 }
 
-const float kPixelReach = 0.7;  // pixels
-
-void blend_small(Disc disc, Contribution c) {
+void blend_small(ViewDisc disc, Contribution c) {
     Ellipse e = widened(project(disc), kPixelReach);
     float determinant = max(e.xx * e.yy - 0.25 * e.xy * e.xy, 1e-12);
     vec2 reach = min(sqrt(kLeastWeightAt * vec2(e.yy, e.xx) / determinant), vec2(kSmallRadius + 2.0));
@@ -50,7 +49,7 @@ void main() {
     uint id = seen_blocks[blocks + place] * kBlockSurfels + gl_LocalInvocationID.x;
     uint item;
     PackedSurfel surfel;
-    Disc disc;
+    ViewDisc disc;
     if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc) || !is_small(disc)) return;
     blend_small(disc, contribution_of(surfel, disc));
 }

@@ -3,18 +3,11 @@
 // surface contribute to the weighted mean of its depth, normal and colour.
 #include "gi/raster/bindings.h"
 #include "gi/raster/blend_sums.h"
+#include "gi/raster/blend_weights.h"
 #include "gi/raster/slab.glsl"
 
 layout(std430, binding = kBindSums) buffer Sums { uint sums[]; };  // kSumWords a pixel of the band
 layout(binding = kUnitFront) uniform usamplerBuffer front_texels;  // GBufferTexel of the front surface
-
-// Discs whose normals differ by less than the first angle belong to one smooth surface; over the second they meet at a
-// crease. Between them their weight falls, so that no border shows on surfaces with noisy normals.
-const float kCosSmooth = 0.906;  // 25 degrees
-const float kCosCrease = 0.643;  // 50 degrees
-// Weights below this share contribute nothing.
-const float kLeastWeight = 1.0 / 32.0;
-const float kLeastWeightAt = 0.685;  // (distance / radius)^2 of that weight
 
 // The part of a disc that is the same in all pixels.
 struct Contribution {
@@ -32,7 +25,7 @@ float disc_weight(float distance2) {
     return rest * rest * rest;
 }
 
-Contribution contribution_of(PackedSurfel surfel, Disc disc) {
+Contribution contribution_of(PackedSurfel surfel, ViewDisc disc) {
     Contribution c;
     c.flags = surfel.d & kSurfelHasNormal;
     // Surfels without a normal face the viewer.

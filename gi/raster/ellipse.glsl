@@ -10,7 +10,7 @@ struct Ellipse {
     vec2 slope;  // m a pixel
 };
 
-Ellipse project(Disc disc) {
+Ellipse project(ViewDisc disc) {
     vec2 scale = pixels_per_tangent();
     vec2 place = disc.centre.xy / view_scale(disc.centre.z), tangent = ray_slope(place);
     Ellipse e;

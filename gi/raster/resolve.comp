@@ -23,17 +23,17 @@ void main() {
     uint id = ids[at];
     uint item;
     PackedSurfel surfel;
-    Disc disc;
+    ViewDisc disc;
     GBufferTexel texel = GBufferTexel(0.0, 0u, 0u, 0u);
     if (id != kNoSurfel && cut_surfel(id, item, surfel) && view_disc(item, surfel, disc)) {
         vec2 tangent = pixel_tangent(vec2(at % view_width, at / view_width));
-        vec3 ray = vec3(ray_slope(tangent), 1.0);
+        vec3 ray = disc_ray(tangent);
         // Points of a fixed size are drawn facing the eye, but are lit by their own normal.
         vec3 normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : disc.normal;
         bool behind = dot(normal, ray) > 0.0;
         if (behind) normal = -normal;
         vec3 world = normal.x * view_right.xyz + normal.y * view_down.xyz + normal.z * view_forward.xyz;
-        texel.depth = disc_depth(disc, tangent);
+        texel.depth = disc_depth(disc, disc_start(tangent), ray);
         texel.normal = encode_octahedral(world);
         texel.albedo = surfel.d | (behind && surfel_has_normal(surfel) ? kTexelFromBehind : 0u);
         texel.material = surfel_material(surfel.b) | packHalf2x16(vec2(0.0, disc.radius));

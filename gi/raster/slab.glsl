@@ -1,12 +1,9 @@
 // The slab about the front surface of a pixel, within which discs are blended.
+#include "gi/raster/blend_weights.h"
 #include "gi/raster/disc.glsl"
 
 uniform uint band_first;  // the rows of the picture that are blended: from band_first to band_end - 1
 uniform uint band_end;
-
-// The slab reaches this share of the front disc's radius to either side of its plane. Planes of one surface differ by
-// their noise and by its curvature.
-const float kSlab = 0.5;
 
 struct Slab {
     float depth;   // of the front surface at the pixel, m

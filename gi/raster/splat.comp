@@ -1,16 +1,17 @@
 // Draws small discs pixel by pixel, one invocation each. The first pass goes through the cut, queues large discs for
 // splat_large.comp and lists the small discs that were nearest in some pixel when they were drawn. The second pass
 // (LUCARNE_ID_PASS, see take_pixel) goes through that list, a fraction of the cut.
-layout(local_size_x = 256) in;
 #include "gi/raster/bindings.h"
 #include "gi/raster/ellipse.glsl"
 #include "gi/raster/splat.glsl"
+
+layout(local_size_x = kCandidateGroup) in;
 
 layout(std430, binding = kBindCandidates) buffer Candidates { uint candidates[]; };
 
 // Returns the order of the disc at an offset, see disc_key. In the pixel of its centre, if the disc does not cover it
 // (seen edge-on, or smaller than a pixel), the order is that of the depth of its centre, pushed back like a rim.
-uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
+uint ellipse_key(ViewDisc disc, Ellipse e, vec2 d) {
     precise float distance2 = ellipse_distance2(e, d);
     precise float slope = e.slope.x * d.x + e.slope.y * d.y;
     precise float key = disc.centre.z + (distance2 <= 1.0 ? slope + disc.push * distance2 : disc.push);
@@ -18,7 +19,7 @@ uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
 }
 
 // Returns whether the disc took a pixel.
-bool draw_small(Disc disc, uint id) {
+bool draw_small(ViewDisc disc, uint id) {
     Ellipse e = project(disc);
     vec2 home = floor(e.centre + 0.5);
     float determinant = max(e.xx * e.yy - 0.25 * e.xy * e.xy, 1e-12);
@@ -62,7 +63,7 @@ void main() {
 #endif
     uint item;
     PackedSurfel surfel;
-    Disc disc;
+    ViewDisc disc;
     if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc)) return;
 #ifdef LUCARNE_ID_PASS
     draw_small(disc, id);

@@ -15,10 +15,14 @@ LUCARNE_STRUCT(FlatSurfel) {
     uint normal;    // octahedral
     uint albedo;    // sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
     uint material;
+    // Room for two edges, 16 bits each: half-planes in the tangent plane that clip the disc. kNoEdges: a
+    // whole disc, as all are today.
+    uint edges;
 };
+LUCARNE_CONST uint kNoEdges = 0xffffffffu;
 
 #ifdef __cplusplus
-static_assert(sizeof(FlatSurfel) == 32);
+static_assert(sizeof(FlatSurfel) == 36);
 }  // namespace lucarne::gi
 #endif
 #endif

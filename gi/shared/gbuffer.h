@@ -1,9 +1,11 @@
-// The G-buffer's texel, for C++, GLSL (std430) and OpenCL C: one buffer of width * height of them, row 0 on
-// top.
+// The G-buffer's texel and what it holds, for C++, GLSL (std430) and OpenCL C: one buffer of width * height
+// of them, row 0 on top.
 #ifndef LUCARNE_GI_SHARED_GBUFFER_H
 #define LUCARNE_GI_SHARED_GBUFFER_H
 
+#include "gi/shared/camera.h"
 #include "gi/shared/language.h"
+#include "gi/shared/surfel_code.h"
 
 #ifdef __cplusplus
 namespace lucarne::gi {
@@ -25,6 +27,23 @@ LUCARNE_CONST uint kTexelFromBehind = 0x80000000u;
 // share of the radius times (distance from the centre / radius)^2. A disc may therefore show where it sticks
 // out of another surface by up to this share of its radius, and no further.
 LUCARNE_CONST float kRimPush = 0.25f;
+
+// Returns the point that the texel of a pixel shows.
+LUCARNE_FN vec3 texel_position(CameraView view, vec2 pixel, GBufferTexel texel) {
+    return view_point(view, pixel + 0.5f, texel.depth);
+}
+LUCARNE_FN vec3 texel_normal(GBufferTexel texel) {
+    return decode_octahedral(texel.normal);
+}
+LUCARNE_FN vec3 texel_albedo(GBufferTexel texel) {
+    return decode_albedo(texel.albedo);
+}
+LUCARNE_FN uint texel_material(GBufferTexel texel) {
+    return texel.material & 0xffffu;
+}
+LUCARNE_FN float texel_radius(GBufferTexel texel) {
+    return unpackHalf2x16(texel.material).y;
+}
 
 #ifdef __cplusplus
 static_assert(sizeof(GBufferTexel) == 16);

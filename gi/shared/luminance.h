@@ -8,8 +8,9 @@
 namespace lucarne::gi {
 #endif
 
+LUCARNE_CONST float kRedWeight = 0.2126f, kGreenWeight = 0.7152f, kBlueWeight = 0.0722f;
 LUCARNE_FN float luminance(vec3 rgb) {
-    return dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f));
+    return dot(rgb, vec3(kRedWeight, kGreenWeight, kBlueWeight));
 }
 
 #ifdef __cplusplus

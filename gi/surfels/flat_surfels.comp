@@ -1,10 +1,10 @@
 // Decodes the surfels of a cut with their footprints, in the order of their ids. Ids in gaps get radius and area 0.
-layout(local_size_x = 256) in;
-
 #include "gi/surfels/bindings.h"
 #include "gi/shared/cut.glsl"
 #include "gi/shared/flat_surfel.h"
 #include "gi/shared/many_threads.glsl"
+
+layout(local_size_x = kBlockSurfels) in;
 
 layout(std430, binding = kBindFlatSurfels) writeonly buffer Flat { FlatSurfel flat_surfels[]; };
 uniform uint ids;
@@ -14,11 +14,11 @@ void main() {
     if (id >= ids) return;
     uint item;
     PackedSurfel surfel;
-    FlatSurfel decoded = FlatSurfel(0.0, 0.0, 0.0, 0.0, 0.0, 0u, 0u, 0u);
+    FlatSurfel decoded = FlatSurfel(0.0, 0.0, 0.0, 0.0, 0.0, 0u, 0u, 0u, kNoEdges);
     if (cut_surfel(id, item, surfel)) {
         vec3 position = surfel_position(item, surfel);
         decoded = FlatSurfel(position.x, position.y, position.z, cut_surfel_radius(item, surfel),
-                             cut_surfel_area(item, surfel), surfel.c, surfel.d, surfel_material(surfel.b));
+                             cut_surfel_area(item, surfel), surfel.c, surfel.d, surfel_material(surfel.b), kNoEdges);
     }
     flat_surfels[id] = decoded;
 }

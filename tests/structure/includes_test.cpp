@@ -162,6 +162,50 @@ TEST(Structure, NoShaderHasABindingOfItsOwn) {
     EXPECT_GT(shaders, 40u);
 }
 
+/// Returns the constants (k...) that a file defines, also those after a comma.
+std::set<std::string> constants_of(const std::filesystem::path& file) {
+    static const std::regex begins("\\b(const|constexpr|LUCARNE_CONST)\\b");
+    static const std::regex name("\\b(k[A-Z]\\w*)(\\[[^=]*\\])? *(=[^=]|[({])");
+    std::set<std::string> found;
+    std::ifstream in(file);
+    bool inside = false;  // a statement that defines constants
+    for (std::string line; std::getline(in, line);) {
+        line = line.substr(0, std::min(line.find("//"), size_t{300})) + " ";
+        inside = inside || std::regex_search(line, begins);
+        if (!inside) continue;
+        for (std::sregex_iterator at(line.begin(), line.end(), name), end; at != end; ++at)
+            found.insert((*at)[1]);
+        inside = line.find_first_of(";{}") == std::string::npos;
+    }
+    return found;
+}
+
+/// What both need stands in one header beside the shader, in the language of gi/shared/language.h.
+TEST(Structure, NoConstantStandsInAShaderAndInCpp) {
+    const std::filesystem::path root = LUCARNE_SOURCE_DIR;
+    std::map<std::string, std::string> in_shaders;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "gi")) {
+        const auto extension = entry.path().extension();
+        if (extension != ".comp" && extension != ".glsl" && extension != ".cl") continue;
+        for (const std::string& name : constants_of(entry.path()))
+            in_shaders[name] = entry.path().lexically_relative(root);
+    }
+    EXPECT_TRUE(in_shaders.contains("kMostHidden")) << "one that a shader has for itself";
+    size_t constants = 0;
+    for (const std::string folder : {"gi", "viewer"})
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+            const auto extension = entry.path().extension();
+            if (extension != ".cpp" && extension != ".h") continue;
+            for (const std::string& name : constants_of(entry.path())) {
+                ++constants;
+                const auto other = in_shaders.find(name);
+                EXPECT_TRUE(other == in_shaders.end())
+                    << name << " of " << entry.path() << " is also one of " << other->second;
+            }
+        }
+    EXPECT_GT(constants, 500u);
+}
+
 /// Hostile names and texts reach a terminal only through io/core/terminal.h, which neutralises them.
 TEST(Structure, OnlyFewFilesWriteToTheTerminal) {
     const std::set<std::string> allowed = {"io/core/terminal.cpp", "io/core/progress.cpp", "io/core/log.cpp",

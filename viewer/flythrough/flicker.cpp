@@ -24,9 +24,8 @@ glm::dvec3 wide(const glm::vec4& v) {
 glm::dvec3 point_at(const SeenFrame& frame, size_t index) {
     const gi::CameraView& c = frame.camera;
     const glm::vec2 pixel(static_cast<float>(index % c.width), static_cast<float>(index / c.width));
-    const glm::dvec2 ndc(gi::view_ndc(c, pixel + 0.5f));
-    return wide(c.origin) +
-           double{frame.texels[index].depth} * (wide(c.forward) + wide(c.right) * ndc.x - wide(c.up) * ndc.y);
+    const glm::vec3 offset = gi::view_offset(c, pixel + 0.5f, frame.texels[index].depth);
+    return wide(c.origin) + glm::dvec3(offset);
 }
 
 /// Returns the pixel that a point falls into.

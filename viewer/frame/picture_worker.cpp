@@ -133,13 +133,9 @@ std::optional<glm::dvec3> Picture::pick(const glm::dvec2& place) const {
             best = at;
         }
     if (!best) return std::nullopt;
-    const glm::vec2 ndc = gi::view_ndc(camera, glm::vec2(*best) + 0.5f);
-    const auto wide = [](const glm::vec4& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
-    const glm::dvec3 across = wide(camera.right) * double{ndc.x} - wide(camera.up) * double{ndc.y};
-    const double along = depth[static_cast<size_t>(best->y) * size.width + best->x];
-    // `across` is where an orthographic ray starts, or where a perspective ray is at a depth of 1.
-    const double apart = camera.projection == gi::kOrthographic ? 1 : along;
-    const glm::dvec3 offset = wide(camera.forward) * along + across * apart;
+    const auto wide = [](const glm::vec3& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
+    const float along = depth[static_cast<size_t>(best->y) * size.width + best->x];
+    const glm::dvec3 offset = wide(gi::view_offset(camera, glm::vec2(*best) + 0.5f, along));
     return local_origin + (wide(camera.origin) + offset) / metres_per_unit;
 }
 

@@ -1,6 +1,7 @@
 #include "gi/engines/micro/micro.h"
 
 #include <memory>
+#include <optional>
 
 #include "gi/bounce_options.h"
 #include "gi/engines/micro/options.h"
@@ -52,8 +53,8 @@ class MicroEngine final : public Engine {
     Result<void> gather(Frame& frame);
     Result<void> add_direct(Frame& frame);
 
-    std::unique_ptr<ClDevice> opencl_;
-    Gatherer gatherer_;  // destroyed before its device
+    ClDevice* opencl_ = nullptr;  ///< of the frame's device
+    Gatherer gatherer_;
     Buffer materials_;
     Sky sky_;
     std::vector<LightView> views_;
@@ -75,9 +76,7 @@ void MicroEngine::update(const Changes& changes) {
 Result<void> MicroEngine::prepare(Frame& frame) {
     if (frame.gl.cuts.light_views.size() < frame.lights.size() || !frame.gl.cuts.light)
         return failed("micro", "the cuts of the light are missing");
-    if (!opencl_) {
-        LUCARNE_ASSIGN(opencl_, ClDevice::open(frame.gl.device));
-    }
+    LUCARNE_ASSIGN(opencl_, frame.gl.device.opencl());
     LUCARNE_TRY(upload_sky(frame, sky_));
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }

@@ -8,8 +8,8 @@ layout(local_size_x = 16, local_size_y = 4) in;
 layout(std430, binding = kBindObscurance) writeonly buffer Obscurance { float obscurance[]; };
 uniform float reach;  // radius of the samples, as a share of the distance to the eye
 
-const int kSamples = 10;
-const float kTurns = 7.0;
+const int kSpiralSamples = 10;
+const float kSpiralTurns = 7.0;
 const float kTau = 6.28318531;
 
 // Returns the position of a pixel relative to the eye, metres, along the axes of the world.
@@ -47,9 +47,9 @@ void main() {
         float in_pixels = radius / pixel_height(camera, texel.depth);
         // Each of the 4 x 4 pixels uses another sixteenth of a turn, in an order that makes neighbours differ.
         int turn = ((pixel.x & 3) * 4 + (pixel.y & 3) * 9) & 15;
-        for (int i = 0; i < kSamples; ++i) {
-            float part = (float(i) + 0.5) / float(kSamples);
-            float angle = part * kTurns * kTau + float(turn) * kTau / 16.0;
+        for (int i = 0; i < kSpiralSamples; ++i) {
+            float part = (float(i) + 0.5) / float(kSpiralSamples);
+            float angle = part * kSpiralTurns * kTau + float(turn) * kTau / 16.0;
             ivec2 at = pixel + ivec2(round(part * in_pixels * vec2(cos(angle), sin(angle))));
             float depth = texel_at(at).depth;
             if (!(depth > 0.0)) continue;
@@ -61,5 +61,5 @@ void main() {
             sum += fall * fall * fall * over * radius / (distance2 + 1e-4 * radius2);
         }
     }
-    obscurance[index] = min(sum * 5.0 / float(kSamples), 1.0);
+    obscurance[index] = min(sum * 5.0 / float(kSpiralSamples), 1.0);
 }

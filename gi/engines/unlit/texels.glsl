@@ -1,6 +1,6 @@
 // Reads the G-buffer as texels of four words (Buffer::bind_texels says why), at any place of the picture.
 #include "gi/engines/unlit/bindings.h"
-#include "gi/shared/gbuffer.glsl"
+#include "gi/shared/gbuffer.h"
 
 layout(binding = kUnitTexels) uniform usamplerBuffer gbuffer_texels;
 uniform CameraView camera;

@@ -1,6 +1,7 @@
 #include "gi/engines/vpl/footprints.h"
 
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/groups.h"
 
 namespace lucarne::gi::vpl {
 
@@ -10,8 +11,7 @@ Result<void> trim_footprints(Device& device, const ShadowMaps& maps, float shrin
     seeds.lights.bind(kBindLights);
     set_layout(*trim, maps.layout);
     trim->set("shrink", shrink);
-    constexpr uint32_t kGroup = 64;  // footprints.comp
-    trim->dispatch(maps.layout.maps * kGroup);
+    trim->dispatch(maps.layout.maps * kTrimGroup);
     return {};
 }
 

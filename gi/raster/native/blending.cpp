@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "gi/raster/blend_sums.h"
+#include "gi/raster/blend_weights.h"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gi/raster/native/blending.cpp"
@@ -20,11 +21,8 @@
 #define LUCARNE_NATIVE_BLENDING_ONCE
 namespace lucarne::gi::native {
 
-// As in slab.glsl and blend.glsl, which explain them.
-constexpr float kSlab = 0.5f;
-constexpr float kCosSmooth = 0.906f, kCosCrease = 0.643f;
-constexpr float kLeastWeight = 1 / 32.0f, kLeastWeightAt = 0.685f;
-constexpr float kPixelReach = 0.7f;
+using raster::kCosCrease, raster::kCosSmooth, raster::kLeastWeight, raster::kLeastWeightAt,
+    raster::kPixelReach, raster::kSlab;
 
 constexpr int kStride = kBlendingTile + 16;  ///< vectors may reach over the right border
 constexpr uint32_t kNoSurface = UINT32_MAX;
@@ -158,7 +156,7 @@ HWY_INLINE void blend_small(const BlendedDiscs& discs, size_t lane, const PixelR
 }
 
 /// blend_large() of blend_large.glsl for the pixels of a tile.
-HWY_INLINE void blend_large(const LargeDisc& disc, const Contribution& c, const DiscView& view,
+HWY_INLINE void blend_large(const ViewDisc& disc, const Contribution& c, const DiscView& view,
                             const PixelRect& rect, BlendingTile& tile) {
     const auto box = large_box(disc, view);
     if (!box || !box->rect.overlaps(rect)) return;
@@ -237,7 +235,7 @@ void blend_block(const CutMemory& cut, const DiscView& view, const PixelRect& re
         BlendedDiscs lanes;
         store_contributions(view, found, i, discs, lanes);
         if (const uint32_t large = bits_of(hn::AndNot(small, drawn)))
-            each_large(large, discs, [&](size_t lane, const LargeDisc& disc) {
+            each_large(large, discs, [&](size_t lane, const ViewDisc& disc) {
                 blend_large(disc, lanes.contribution(lane), view, rect, tile);
             });
         Ellipses e = project(view, discs);

@@ -1,5 +1,6 @@
-// Surfels as discs in a view, several at a time: disc.glsl and ellipse.glsl for vectors. The operations and
-// their order are those of the shaders, and none is fused, so that every instruction set gives the same bits.
+// Surfels as discs in a view, several at a time: gi/shared/disc.h, disc.glsl and ellipse.glsl for vectors,
+// which have no operators on all instruction sets. The operations and their order are the same, and none is
+// fused, so that every instruction set gives the same bits (tests/gi/raster/vectors_test.cpp compares them).
 // Included once for each instruction set (Highway's foreach_target.h).
 #if defined(LUCARNE_GI_RASTER_NATIVE_DISC_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef LUCARNE_GI_RASTER_NATIVE_DISC_INL_H
@@ -12,6 +13,7 @@
 #include "gi/raster/native/large_disc.h"
 #include "gi/raster/native/tiles.h"
 #include "gi/raster/native/vectors-inl.h"
+#include "gi/shared/disc.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/surfel.h"
 
@@ -62,7 +64,7 @@ HWY_INLINE F view_scale(const DiscView& view, F depth) {
     return orthographic(view) ? set(1.0f) : depth;
 }
 
-/// Several discs, see `Disc` in disc.glsl.
+/// Several discs, see ViewDisc.
 struct Discs {
     V3 centre, normal;
     F radius, extent, push;
@@ -119,8 +121,6 @@ HWY_INLINE Mask turn_discs(const DiscView& view, U normals, U flags, Discs& disc
     return hn::And(drawn, hn::Gt(add(discs.centre.z, discs.extent), set(view.forward.w)));
 }
 
-/// Discs of a larger radius, in pixels, are drawn exactly.
-inline constexpr float kSmallRadius = 8;
 static_assert(HWY_MAX_BYTES / 4 <= HostSurfels::kPadding);
 HWY_INLINE Mask are_small(const DiscView& view, const Discs& discs) {
     const F most =
@@ -266,11 +266,11 @@ HWY_INLINE void each_large(uint32_t large, const Discs& discs, const Draw& draw)
     for (int k = 0; k < 9; ++k) hn::Store(values[k], Floats(), at[k]);
     for (; large; large &= large - 1) {
         const auto lane = static_cast<size_t>(std::countr_zero(large));
-        draw(lane, LargeDisc{{at[0][lane], at[1][lane], at[2][lane]},
-                             {at[3][lane], at[4][lane], at[5][lane]},
-                             at[6][lane],
-                             at[7][lane],
-                             at[8][lane]});
+        draw(lane, ViewDisc{{at[0][lane], at[1][lane], at[2][lane]},
+                            {at[3][lane], at[4][lane], at[5][lane]},
+                            at[6][lane],
+                            at[7][lane],
+                            at[8][lane]});
     }
 }
 
@@ -288,13 +288,13 @@ HWY_INLINE hn::Vec<D> column_tangents(D d, const DiscView& view, int column) {
     return hn::Mul(hn::Sub(share, one), hn::Set(d, view.right.w));
 }
 
-/// Where the rays of some pixels of a row meet the plane of a large disc. See disc_key() in disc.glsl.
+/// Where the rays of some pixels of a row meet the plane of a large disc. See meet_disc().
 struct Meeting {
     Row z;          ///< not clamped
     Row distance2;  ///< from the disc's centre, m^2
     Row slope;
 };
-HWY_INLINE Meeting meet(const LargeDisc& disc, const DiscView& view, float tangent_y, int column) {
+HWY_INLINE Meeting meet(const ViewDisc& disc, const DiscView& view, float tangent_y, int column) {
     const RowFloats df;
     const bool flat = orthographic(view);
     const auto row = [&](float v) { return hn::Set(df, v); };
@@ -313,7 +313,7 @@ HWY_INLINE Meeting meet(const LargeDisc& disc, const DiscView& view, float tange
     return m;
 }
 /// Limits depths to those that the disc spans.
-HWY_INLINE Row in_disc(const LargeDisc& disc, Row z) {
+HWY_INLINE Row in_disc(const ViewDisc& disc, Row z) {
     const RowFloats df;
     return hn::Min(hn::Max(z, hn::Set(df, disc.centre.z - disc.extent)),
                    hn::Set(df, disc.centre.z + disc.extent));

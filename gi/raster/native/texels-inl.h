@@ -1,5 +1,7 @@
-// gbuffer.glsl for vectors of texels: decodes them and computes the rays of a view. Included once for each
-// instruction set (Highway's foreach_target.h).
+// gbuffer.h and camera.h for vectors of texels: decodes them and computes the rays of a view. The formulas
+// stand a second time here because vectors have no operators on all instruction sets, and because they share
+// divisions; a test compares both (tests/gi/raster/vectors_test.cpp). Included once for each instruction set
+// (Highway's foreach_target.h).
 #if defined(LUCARNE_GI_RASTER_NATIVE_TEXELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef LUCARNE_GI_RASTER_NATIVE_TEXELS_INL_H
 #undef LUCARNE_GI_RASTER_NATIVE_TEXELS_INL_H
@@ -80,7 +82,7 @@ HWY_INLINE V3 view_ray(const CameraView& view, F column, F row) {
     return {add(set(view.forward.x), across.x), add(set(view.forward.y), across.y),
             add(set(view.forward.z), across.z)};
 }
-/// view_point() relative to the view's origin, for the same places.
+/// view_offset() for the same places.
 HWY_INLINE V3 view_offset(const CameraView& view, F column, F row, F depth) {
     if (view.projection != kOrthographic) return scaled(view_ray(view, column, row), depth);
     const V3 across = view_across(view, column, row);

@@ -21,7 +21,6 @@ namespace lucarne::gi::native {
 constexpr int kCell = 8;  ///< pixels: side of the cells whose farthest order is known
 constexpr int kCells = kVisibilityTile / kCell;
 constexpr int kStride = kVisibilityTile + 16;  ///< vectors may reach over the right border
-constexpr uint32_t kNoKey = UINT32_MAX;
 
 /// Orders and ids of a tile's pixels. Orders are the bits of positive floats, so integers compare like
 /// depths.
@@ -87,8 +86,8 @@ HWY_INLINE void draw_small(const SmallDiscs& discs, size_t lane, uint32_t id, co
     }
 }
 
-/// disc_key() of disc.glsl for all pixels of the tile that a large disc may cover.
-HWY_INLINE void draw_large(const LargeDisc& disc, uint32_t id, const DiscView& view, const PixelRect& rect,
+/// disc_key() for all pixels of the tile that a large disc may cover.
+HWY_INLINE void draw_large(const ViewDisc& disc, uint32_t id, const DiscView& view, const PixelRect& rect,
                            VisibilityTile& tile) {
     const auto box = large_box(disc, view);
     if (!box || !box->rect.overlaps(rect)) return;
@@ -133,7 +132,7 @@ bool draw_block(const CutMemory& cut, const DiscView& view, const PixelRect& rec
         const Mask small = are_small(view, discs);
         if (const uint32_t large = bits_of(hn::AndNot(small, drawn))) {
             has_large = true;
-            each_large(large, discs, [&](size_t lane, const LargeDisc& disc) {
+            each_large(large, discs, [&](size_t lane, const ViewDisc& disc) {
                 draw_large(disc, found.id[i + lane], view, rect, tile);
             });
         }
@@ -223,7 +222,7 @@ void resolve_row(const CutMemory& cut, const DiscView& view, int x, int y, int c
         turn_discs(view, packed.c, packed.d, discs);
         const F tangent_x = column_tangents(Floats(), view, x + at);
         const V3 ray{flat ? zero : tangent_x, flat ? zero : tangent_y, one};
-        // disc_depth() of disc.glsl.
+        // disc_depth()
         const F slope = dot(discs.normal, ray);
         const V3 from_start{flat ? sub(discs.centre.x, tangent_x) : discs.centre.x,
                             flat ? sub(discs.centre.y, tangent_y) : discs.centre.y, discs.centre.z};

@@ -171,12 +171,7 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
 /// Returns the point that a texel shows.
 inline glm::vec3 position_of(const CameraView& camera, const std::vector<GBufferTexel>& texels,
                              size_t pixel) {
-    const float x =
-        2 * (static_cast<float>(pixel % camera.width) + .5f) / static_cast<float>(camera.width) - 1;
-    const float y =
-        2 * (static_cast<float>(pixel / camera.width) + .5f) / static_cast<float>(camera.height) - 1;
-    const glm::vec3 ray = glm::vec3(camera.forward) + glm::vec3(camera.right) * x - glm::vec3(camera.up) * y;
-    return glm::vec3(camera.origin) + texels[pixel].depth * ray;
+    return texel_position(camera, glm::vec2(pixel % camera.width, pixel / camera.width), texels[pixel]);
 }
 
 }  // namespace lucarne::gi::scenes

@@ -38,11 +38,7 @@ struct Lit {
         return {v.x, v.y, v.z};
     }
     glm::vec3 position(uint32_t x, uint32_t y) const {
-        const float u = 2 * (static_cast<float>(x) + .5f) / static_cast<float>(camera.width) - 1;
-        const float v = 2 * (static_cast<float>(y) + .5f) / static_cast<float>(camera.height) - 1;
-        const glm::vec4 ray = camera.forward + u * camera.right - v * camera.up;
-        const glm::vec4 p = camera.origin + texels[y * camera.width + x].depth * ray;
-        return {p.x, p.y, p.z};
+        return texel_position(camera, glm::vec2(x, y), texels[y * camera.width + x]);
     }
 };
 

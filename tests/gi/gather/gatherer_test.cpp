@@ -8,19 +8,11 @@
 
 #include "gi/shared/surfel_code.h"
 #include "io/core/random.h"
-#include "tests/gi/engines/surfel_scenes.h"
 #include "tests/gi/on_device.h"
+#include "tests/gi/tree/flat_scenes.h"
 
 namespace lucarne::gi {
 namespace {
-
-std::vector<FlatSurfel> flat(const std::vector<Surfel>& surfels) {
-    std::vector<FlatSurfel> result;
-    for (const Surfel& s : surfels)
-        result.push_back({s.position.x, s.position.y, s.position.z, s.radius, s.area,
-                          encode_octahedral(s.normal), encode_albedo(s.albedo) | kSurfelHasNormal, s.material});
-    return result;
-}
 
 class GathererTest : public testing::Test {
  protected:
@@ -28,9 +20,9 @@ class GathererTest : public testing::Test {
         auto made = Device::headless();
         ASSERT_TRUE(made) << made.error().line();
         device_ = std::move(*made);
-        auto opened = ClDevice::open(*device_);
+        auto opened = device_->opencl();
         ASSERT_TRUE(opened) << opened.error().line();
-        opencl_ = std::move(*opened);
+        opencl_ = *opened;
     }
     std::vector<glm::vec4> gather(std::span<const FlatSurfel> surfels, std::span<const SideLight> light,
                                   std::span<const GatherPoint> points, uint32_t side = 24) {
@@ -47,7 +39,7 @@ class GathererTest : public testing::Test {
     }
 
     std::unique_ptr<Device> device_;
-    std::unique_ptr<ClDevice> opencl_;
+    ClDevice* opencl_ = nullptr;
 };
 
 /// Points on the floor of a room of this size.
@@ -62,22 +54,10 @@ std::vector<GatherPoint> floor_points(float size, float lift, size_t count) {
 }
 
 TEST_F(GathererTest, ClosedRoomIsSeenInEveryDirection) {
-    const auto surfels = flat(scenes::closed_box(2, 60, glm::vec3(0.5f)));
+    const auto surfels = flat::of(scenes::closed_box(2, 60, glm::vec3(0.5f)));
     const std::vector<SideLight> light(surfels.size(), {glm::vec3(1), glm::vec3(1)});
     double mean = 0, empty = 0;
     const auto results = gather(surfels, light, floor_points(2, surfels[0].radius, 256));
-    { // brute force
-        const auto pts = floor_points(2, surfels[0].radius, 256);
-        const uint32_t grid = 27; Random random(1, grid); int miss = 0, n = 0;
-        const GatherPoint& p = pts[0];
-        glm::vec3 start = p.position + p.normal * p.lift;
-        for (size_t j = 0; j < grid; ++j) for (size_t i = 0; i < grid; ++i) {
-            double x = 2 * (i + random.uniform()) / grid - 1, y = 2 * (j + random.uniform()) / grid - 1, z2 = 1 - x * x - y * y; if (z2 < 1e-6) continue;
-            glm::vec3 d(x, y, std::sqrt(z2)); bool hit = false; ++n;
-            for (const auto& s : surfels) { glm::vec3 c(s.x, s.y, s.z), nn = decode_octahedral(s.normal); float t = glm::dot(c - start, nn) / glm::dot(d, nn); glm::vec3 o = start + d * t - c; if (t > 0 && glm::dot(o, o) <= s.radius * s.radius) hit = true; }
-            miss += !hit; }
-        printf("brute %d of %d\n", miss, n);
-    }
     for (const glm::vec4& r : results) mean += r.x, empty += r.w;
     EXPECT_NEAR(mean / 256, 1, 1e-3);
     EXPECT_NEAR(empty / 256, 0, 1e-3);

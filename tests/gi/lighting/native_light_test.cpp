@@ -166,8 +166,7 @@ class NativeLight : public OnDevice {
         const CameraView& view = shot_.camera;
         const glm::vec2 at(static_cast<float>(pixel % view.width) + 0.5f,
                            static_cast<float>(pixel / view.width) + 0.5f);
-        const glm::vec2 ndc = view_ndc(view, at);
-        return glm::vec3(view.forward) + ndc.x * glm::vec3(view.right) - ndc.y * glm::vec3(view.up);
+        return view_ray(view, at);
     }
 
     std::unique_ptr<LoadedCloud> loaded_;
@@ -234,11 +233,8 @@ TEST_F(NativeLight, AWallReflectsWhatTheLightSends) {
             size_t others = 0, faced = 0;
             for (size_t i = 0; i < pixels_; ++i) {
                 if (!shown(i)) continue;
-                const bool parallel = shot.camera.projection == kOrthographic;
-                const glm::vec3 forward(shot.camera.forward), across = ray(i) - forward;
-                const glm::vec3 position =
-                    glm::vec3(shot.camera.origin) +
-                    (parallel ? across + texels_[i].depth * forward : texels_[i].depth * ray(i));
+                const glm::vec2 pixel(i % shot.camera.width, i / shot.camera.width);
+                const glm::vec3 position = texel_position(shot.camera, pixel, texels_[i]);
                 glm::vec3 to_light;
                 const glm::vec3 irradiance = light_irradiance(shot.lights[0], position,
                                                               decode_octahedral(texels_[i].normal), to_light);

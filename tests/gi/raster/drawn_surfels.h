@@ -22,11 +22,7 @@ struct Picture {
     std::vector<uint32_t> ids;
     std::vector<Surfel> surfels;  ///< as the device stores them
 
-    glm::vec3 ray(uint32_t x, uint32_t y) const {
-        const glm::vec2 at = glm::vec2(x, y) + .5f + glm::vec2(view.right.w, view.up.w);
-        const glm::vec2 ndc = 2.0f * at / glm::vec2(view.width, view.height) - 1.0f;
-        return glm::vec3(view.forward) + ndc.x * glm::vec3(view.right) - ndc.y * glm::vec3(view.up);
-    }
+    glm::vec3 ray(uint32_t x, uint32_t y) const { return view_ray(view, glm::vec2(x, y) + 0.5f); }
     glm::vec3 eye() const { return {view.origin.x, view.origin.y, view.origin.z}; }
     bool empty(size_t at) const { return ids[at] == kNoSurfel; }
     bool red(size_t at) const { return !empty(at) && decode_albedo(texels[at].albedo).y < 0.1f; }

@@ -6,11 +6,12 @@
 // exponential race; Efraimidis and Spirakis 2006). w is the flux through the texel times the reflectance there. The
 // flux of the winner times sum(w) / w then has the whole flux as its mean, with little variance.
 // LUCARNE_BEST_CANDIDATE selects the method of the paper.
-layout(local_size_x = 64) in;
-
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/groups.h"
 #include "gi/shared/cut.glsl"
 #include "gi/engines/vpl/redistribution/redistribution.glsl"
+
+layout(local_size_x = kRaceGroup) in;
 
 layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = kBindLights) writeonly buffer Next { VplLight next[]; };  // diffuse is still without the flux
@@ -23,8 +24,8 @@ uniform uint seed, id_bits, first_map;
 // the map stands in for them, up to this factor.
 const float kMostHidden = 2.0;
 
-shared float shared_key[64], shared_sum[64], shared_all[64], shared_found[64];
-shared uint shared_place[64];
+shared float shared_key[kRaceGroup], shared_sum[kRaceGroup], shared_all[kRaceGroup], shared_found[kRaceGroup];
+shared uint shared_place[kRaceGroup];
 
 float random(uint a, uint b) {  // in (0, 1); a hash after Jarzynski and Olano 2020 (pcg2d)
     uvec2 v = uvec2(a, b) * 1664525u + 1013904223u;
@@ -103,7 +104,7 @@ void main() {
     mat3 frame = frame_about(vpl_normal(map).xyz);
     float best = 3e38, sum = 0.0, all = 0.0, found = 0.0;
     uint place = 0u;
-    for (uint i = lane; i < map_side * map_side; i += 64u) {
+    for (uint i = lane; i < map_side * map_side; i += kRaceGroup) {
         uvec2 at = uvec2(i % map_side, i / map_side);
         MapRay ray = look(map, at);
         float flux = luminance(intensity_at(map, frame, ray)) * ray.solid_angle;
@@ -133,7 +134,7 @@ void main() {
     shared_found[lane] = found;
     barrier();
     if (lane != 0u) return;
-    for (uint i = 1u; i < 64u; ++i) {
+    for (uint i = 1u; i < kRaceGroup; ++i) {
         if (shared_key[i] < best) place = shared_place[i];
         best = min(best, shared_key[i]);
         sum += shared_sum[i];

@@ -1,6 +1,7 @@
 #include "gi/engines/vpl/redistribution/redistribution.h"
 
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/groups.h"
 
 namespace lucarne::gi::vpl {
 
@@ -41,7 +42,6 @@ Result<void> race_maps(Device& device, const DeviceCut& cut, const ShadowMaps& m
     race->set("seed", seed);
     race->set("id_bits", maps.id_bits);
     race->set("first_map", first);
-    constexpr uint32_t kRaceGroup = 64;  // redistribute.comp
     race->dispatch((end - first) * kRaceGroup);
     return {};
 }

@@ -1,11 +1,11 @@
 // Computes the emission weight of every surfel of the light cut: its share of the surface times the luminance of its
 // emission, W/sr.
-layout(local_size_x = 256) in;
-
 #include "gi/engines/vpl/bindings.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/cut.glsl"
 #include "gi/shared/luminance.h"
+
+layout(local_size_x = kBlockSurfels) in;
 
 layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = kBindEmitters) writeonly buffer Weights { float weights[]; };

@@ -16,7 +16,7 @@ layout(std430, binding = kBindLights) writeonly buffer Lights { VplLight lights[
 uniform uint first_light, light_count;
 
 // Below this cosine a footprint would grow without bound; the angle to the surface is then a twentieth of a degree.
-const float kLeastCosine = 1e-3;
+const float kLeastFacing = 1e-3;
 
 // A VPL infinitely far away, so that no surfel is drawn into its shadow map.
 VplLight dead_light() { return VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0)); }
@@ -42,7 +42,7 @@ VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
     vec3 offset = position - light_view.origin.xyz;
     vec3 flux = view_intensity(away, dot(offset, offset)) / (float(light_count) * density);
     Reflectance r = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
-    float cosine = max(-dot(normal, away), kLeastCosine);
+    float cosine = max(-dot(normal, away), kLeastFacing);
     float footprint = dot(offset, offset) / (float(light_count) * density * cosine);
     return VplLight(vec4(position, footprint), vec4(normal, texel_radius(texel)), vec4(flux * r.kd / kPi, r.exponent),
                     vec4(flux, stands_clear(light_ids[pixel.y * light_view.width + pixel.x], normal, texel_radius(texel))),

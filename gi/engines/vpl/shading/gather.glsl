@@ -2,6 +2,7 @@
 #include "gi/engines/vpl/bindings.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/engines/vpl/lights.glsl"
+#include "gi/engines/vpl/shading/separation.h"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 
 layout(binding = kUnitAtlas) uniform usamplerBuffer atlas_texels;
@@ -77,23 +78,7 @@ struct Arriving {
     bool any;
 };
 
-// Returns the share, from 0 to 1, of the light between two points that counts, because they may belong to one surface.
-// `heights` are those of each over the plane of the other, m; `cosine` is that between their normals. Points of one
-// plane do not light each other, whichever side they face: positions are rounded, and the G-buffer lets the rim of a
-// disc stick out of the surface that hides it by a share of its radius (kRimPush). Otherwise a lamp on a roof would
-// light the ceiling under it. Neither do points that see each other at very low angles: noise tilts the normals of a
-// scanned floor by some degrees, and two points that happen to lean toward each other would exchange light over many
-// metres (README.md has figures). Where both face each other they may also be the two sides of a thin sheet, such as a
-// ceiling in the sun: only points that stand clear of each other count.
-float separate_share(vec2 heights, float distance_m, float radius, float cosine) {
-    float opposite = clamp(-cosine, 0.0, 1.0);
-    float clearance = min(heights.x, heights.y) / radius;
-    float rise = max(heights.x, heights.y) / distance_m;  // sine of the larger angle over the horizon
-    return clamp((clearance - mix(kRimPush, 2.0, opposite)) / mix(0.6 - kRimPush, 2.0, opposite), 0.0, 1.0) *
-           clamp((rise - mix(0.035, 0.1, opposite)) / mix(0.07, 0.1, opposite), 0.0, 1.0);
-}
-
-// The same for a VPL and a point on a surface with this normal and radius of its surfel; `offset` leads from the VPL to
+// Returns separate_share() of a VPL and a point on a surface with this normal and radius of its surfel; `offset` leads from the VPL to
 // the point. 0 if one of them does not face the other, and for dead VPLs.
 float pair_share(vec3 light_normal, vec3 offset, vec3 normal, float radius) {
     vec2 heights = vec2(-dot(normal, offset), dot(light_normal, offset));

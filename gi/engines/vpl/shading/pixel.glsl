@@ -1,6 +1,6 @@
 // A pixel of the camera's G-buffer as a receiver, for shading and merging.
 #include "gi/engines/vpl/bindings.h"
-#include "gi/shared/gbuffer.glsl"
+#include "gi/shared/gbuffer.h"
 #include "gi/engines/vpl/shading/gather.glsl"
 
 layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };

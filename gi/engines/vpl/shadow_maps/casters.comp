@@ -1,9 +1,9 @@
 // Decodes the surfels of the light cut to casters for the passes that draw them into the shadow maps.
-layout(local_size_x = 256) in;
-
 #include "gi/engines/vpl/bindings.h"
 #include "gi/shared/cut.glsl"
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
+
+layout(local_size_x = kBlockSurfels) in;
 
 layout(std430, binding = kBindCasters) writeonly buffer Casters { uvec4 codes[]; };
 

@@ -6,15 +6,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shadow_maps/fringe.glsl"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
+#include "gi/engines/vpl/shadow_maps/splats.h"
 
 layout(binding = kUnitAtlas) uniform usamplerBuffer cores;  // the atlas
 #ifdef LUCARNE_SOURCES
 layout(std430, binding = kBindSources) readonly buffer Sources { uint sources[]; };  // sources.glsl
 #endif
-
-// Tolerance for the sine of the angle between the coded normal and that of the surface: the code is off by up to 2
-// degrees.
-const float kNormalError = 0.05;
 
 vec3 map_point(ivec2 at, uint texel) {
     vec2 uv = texel_centre(uvec2(at));
@@ -34,13 +31,12 @@ bool goes_on(uint map, ivec2 other, uint own, vec3 point) {
 
 bool supported(uint map, ivec2 at, uint own) {
     vec3 point = map_point(at, own);
-    const ivec2 kAxes[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
-    for (int axis = 0; axis < 4; ++axis) {
+    for (int axis = 0; axis < kSupportAxes; ++axis) {
         int sides = 0;
         for (int sign = -1; sign <= 1; sign += 2) {
             bool met = false;
-            for (int step = 1; step <= 2 && !met; ++step) {
-                ivec2 other = at + sign * step * kAxes[axis];
+            for (int step = 1; step <= kSupportReach && !met; ++step) {
+                ivec2 other = at + sign * step * support_axis(axis);
                 vec2 uv = texel_centre(uvec2(max(other, ivec2(0))));
                 met = min(other.x, other.y) < 0 || dot(uv, uv) >= 1.0 || goes_on(map, other, own, point);
             }

@@ -8,8 +8,9 @@
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 #include "gi/engines/vpl/shadow_maps/queue.glsl"
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
+#include "gi/shared/disc.h"
 
-struct Disc {
+struct MapDisc {
     vec3 centre;  // in the frame of the VPL, relative to the centre of its map
     vec3 normal;
     float radius;
@@ -19,7 +20,7 @@ struct Disc {
 };
 
 // Computes the disc of `caster` in the map of VPL `map`. Returns false if no part of it can be hit.
-bool disc_over(uint map, Caster caster, out Disc disc) {
+bool disc_over(uint map, Caster caster, out MapDisc disc) {
     vec3 light_normal = vpl_normal(map).xyz;
     vec3 offset = caster.position - vpl_map_centre(map);
     float distance2 = max(dot(offset, offset), 1e-12);
@@ -27,19 +28,18 @@ bool disc_over(uint map, Caster caster, out Disc disc) {
     if (caster.normal == vec3(0.0)) caster.normal = -offset / distance_m;
     float radius = thinned_radius(caster.radius, distance_m, abs(dot(caster.normal, offset)) / distance_m);
     float cosine = dot(light_normal, caster.normal);
-    // A disc nearly parallel to the surface of the VPL and hardly above the centre of the map is part of the VPL's
-    // own sheet.
-    float lowest = abs(cosine) > 0.5 ? kSheetTolerance * radius : 0.0;
-    float top = dot(light_normal, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
+    // What lies no higher is the VPL's own sheet.
+    float lowest = abs(cosine) > kOwnSheet ? kSheetTolerance * radius : 0.0;
+    float top = dot(light_normal, offset) + disc_reach(radius, cosine);
     mat3 frame = frame_about(light_normal);
     float core = max(caster.radius, kCore * radius);
-    disc = Disc(offset * frame, caster.normal * frame, radius, caster.radius, core, lowest);
+    disc = MapDisc(offset * frame, caster.normal * frame, radius, caster.radius, core, lowest);
     return top > lowest;
 }
 
 // Computes the texels whose centres the disc may cover, first to last; there are none if first exceeds last. The cone
 // about the bounding sphere of the disc becomes a circle in the map, because the projection is stereographic.
-void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
+void map_box(MapDisc disc, out ivec2 first, out ivec2 last) {
     float inverse = inversesqrt(dot(disc.centre, disc.centre));
     float sine = min(disc.radius * inverse, 1.0);
     // 0 if the cone contains the pole of the map at infinity; then the circle is the whole map.
@@ -64,14 +64,11 @@ struct Hit {
     float t;  // distance along the ray over (1 + u^2 + v^2); 0 if the ray misses the disc
     bool core;
 };
-Hit disc_hit(Disc disc, float offset, vec2 uv) {
+Hit map_hit(MapDisc disc, vec2 uv) {
     vec3 ray = map_ray(uv);
-    float t = offset / dot(disc.normal, ray);
-    vec3 hit = t * ray;
-    vec3 from_centre = hit - disc.centre;
-    float square = dot(from_centre, from_centre);
-    bool met = t > 0.0 && square <= disc.radius * disc.radius && hit.z > disc.lowest;
-    return Hit(met ? t : 0.0, square <= disc.core * disc.core);
+    DiscHit hit = meet_disc(disc.centre, disc.normal, ray);
+    bool met = hit.t > 0.0 && on_disc(hit, disc.radius) && hit.t * ray.z > disc.lowest;
+    return Hit(met ? hit.t : 0.0, on_disc(hit, disc.core));
 }
 
 void take_core(uvec2 pair, uint index, float distance_m, uint surface) {
@@ -87,8 +84,7 @@ void take_fringe(uvec2 pair, uint index, float distance_m, uint surface) {
 #endif
 }
 
-// Values that all texels of a disc share: dot(normal, centre), and the code of the surface.
-float disc_offset(Disc disc) { return dot(disc.normal, disc.centre); }
-uint disc_surface(Disc disc) {
-    return map_surface(disc.surfel_radius, disc_offset(disc) > 0.0 ? -disc.normal : disc.normal);
+// Returns the code of the surface, which all texels of a disc share.
+uint disc_surface(MapDisc disc) {
+    return map_surface(disc.surfel_radius, dot(disc.normal, disc.centre) > 0.0 ? -disc.normal : disc.normal);
 }

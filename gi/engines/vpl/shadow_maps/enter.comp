@@ -1,12 +1,13 @@
 // Enqueues the pairs of surfel and map that have to be drawn: a workgroup a block, an invocation a surfel. Each
 // surfel is tested against the maps for which meet.comp did not cull its block. Splatting without a queue would leave
 // most lanes idle.
-layout(local_size_x = 256) in;  // kBlockSurfels
-
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
 #include "gi/engines/vpl/lights.glsl"
 #include "gi/engines/vpl/shadow_maps/queue.glsl"
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
+#include "gi/shared/surfel.h"
+
+layout(local_size_x = kBlockSurfels) in;
 
 uniform uint first_block, first_map;
 uniform uint places;  // length of pairs[]
@@ -30,7 +31,7 @@ uint next_word(uint block, uint word) {
 
 void main() {
     uint block = first_block + gl_WorkGroupID.x;
-    uint id = block * 256u + gl_LocalInvocationID.x;
+    uint id = block * kBlockSurfels + gl_LocalInvocationID.x;
     Caster caster = read_caster(id);
     // A surfel without a normal faces every VPL. An id without a surfel fails every test, because its scale is
     // negative.

@@ -8,6 +8,3 @@ layout(std430, binding = kBindFringe) buffer Fringe { uint fringe[]; };  // same
 #ifdef LUCARNE_SOURCES
 layout(std430, binding = kBindFringeSources) buffer FringeSources { uint fringe_sources[]; };  // sources.glsl
 #endif
-
-// Radius of the core over that of the splat. With a cover of four, each direction lies in one core on average.
-const float kCore = 0.5;

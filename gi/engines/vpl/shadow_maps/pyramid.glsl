@@ -7,9 +7,6 @@ layout(std430, binding = kBindCoarse) buffer Coarse { uint coarse[]; };  // leve
 uniform uint level;  // the level to write
 uniform uint maps;
 
-// A coarse texel at the edge of an opening: neither a sheet nor a hole.
-const uint kOpen = 0xfffffffeu;
-
 // Returns the end of the depth interval [d, d + 2 r] of a sheet in the neighbourhood of a texel.
 float sheet_end(uint texel) {
     float distance_m = map_distance(texel);

@@ -13,26 +13,25 @@ uvec2 first_of(uint bits, ivec2 first, int width) {
     return uvec2(first + ivec2(i - row * width, row));
 }
 
-float distance_at(Disc disc, float offset, uvec2 at) {
+float distance_at(MapDisc disc, uvec2 at) {
     vec2 uv = texel_centre(at);
-    return offset / dot(disc.normal, map_ray(uv)) * (1.0 + dot(uv, uv));
+    return meet_disc(disc.centre, disc.normal, map_ray(uv)).t * (1.0 + dot(uv, uv));
 }
 
 void main() {
     uint place = gl_GlobalInvocationID.x;
     if (place >= queues[queue].pair_count) return;
     uvec2 pair = pairs[place];
-    Disc disc;
+    MapDisc disc;
     if (!disc_over(pair.y, read_caster(pair.x), disc)) return;
     ivec2 first, last;
-    disc_box(disc, first, last);
+    map_box(disc, first, last);
     if (first.x > last.x || first.y > last.y) return;
     ivec2 size = last - first + 1;
     if (size.x * size.y > kLargeTexels) {
         large_places[atomicAdd(queues[queue].large_count, 1u)] = place;
         return;
     }
-    float offset = disc_offset(disc);
     uint surface = disc_surface(disc);
     // First all texels are tested, then those that the disc covers are written: llvmpipe writes one lane after the
     // other, and few lanes cover a texel in the same step. Loops test at their end, because llvmpipe runs a loop body
@@ -40,7 +39,7 @@ void main() {
     uint core = 0u, rest = 0u, bit = 1u;
     ivec2 at = first;
     do {
-        Hit hit = disc_hit(disc, offset, texel_centre(uvec2(at)));
+        Hit hit = map_hit(disc, texel_centre(uvec2(at)));
         if (hit.t > 0.0 && hit.core) core |= bit;
         if (hit.t > 0.0 && !hit.core) rest |= bit;
         bit <<= 1;
@@ -49,13 +48,13 @@ void main() {
     do {
         if (core == 0u) break;
         uvec2 texel = first_of(core, first, size.x);
-        take_core(pair, texel_index(pair.y, texel), distance_at(disc, offset, texel), surface);
+        take_core(pair, texel_index(pair.y, texel), distance_at(disc, texel), surface);
         core &= core - 1u;
     } while (core != 0u);
     do {
         if (rest == 0u) break;
         uvec2 texel = first_of(rest, first, size.x);
-        take_fringe(pair, texel_index(pair.y, texel), distance_at(disc, offset, texel), surface);
+        take_fringe(pair, texel_index(pair.y, texel), distance_at(disc, texel), surface);
         rest &= rest - 1u;
     } while (rest != 0u);
 }

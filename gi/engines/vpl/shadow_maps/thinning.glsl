@@ -6,21 +6,13 @@
 // surfels, is at least what a splat should cover there. Levels of detail are even samples (octree/convert), so the
 // few surfels that are drawn close the surface far better than as many chosen at random; they are drawn larger, to
 // stand in for the others.
-#include "gi/shared/brdf.h"
+#include "gi/engines/vpl/shadow_maps/splats.h"
 
 uniform float splat_angle;
 
-// Lower bound of the slant: discs seen edge-on grow by at most 1 over its root.
-const float kLeastSlant = 0.1;
-const float kLargestSplat = 3.1623;  // 1 / sqrt(kLeastSlant), in splat_angle * distance
-
-// Number of splats over each direction where a map is thinned. At 3 even patterns leave 1 % open, holes of a texel
-// that pull-push closes.
-const float kThinnedCover = 4.0;
-
 // Returns the area of its surface, m^2, that a splat at this distance stands for.
 float needed_area(float distance2, float slant) {
-    return kPi / kThinnedCover * splat_angle * splat_angle * distance2 / max(slant, kLeastSlant);
+    return thinned_area(splat_angle) * distance2 / max(slant, kLeastSlant);
 }
 
 // Returns the radius of the disc that is drawn for a surfel: its own or, where others are left out, that of a splat.

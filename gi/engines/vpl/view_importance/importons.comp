@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/vpl_light.h"
 #include "gi/shared/brdf.h"
-#include "gi/shared/gbuffer.glsl"
+#include "gi/shared/gbuffer.h"
 
 layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = kBindGBuffer) readonly buffer GBufferTexels { GBufferTexel texels[]; };
@@ -17,7 +17,7 @@ uniform uint cells;  // along a side of the grid
 uniform vec2 shift;  // in [0, 1)^2, another one each frame
 
 // Pixels of a cell that are tried until one shows a surface.
-const uint kTries = 4u;
+const uint kPixelTries = 4u;
 
 VplLight importon_at(uvec2 pixel, GBufferTexel texel) {
     vec3 position = texel_position(camera, pixel, texel);
@@ -38,9 +38,9 @@ void main() {
     if (index >= cells * cells) return;
     vec2 cell = vec2(index % cells, index / cells);
     VplLight importon = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-    for (uint i = 0u; i < kTries; ++i) {
+    for (uint i = 0u; i < kPixelTries; ++i) {
         // The R2 sequence (Roberts 2018): even over the cells and over the tries.
-        vec2 within = fract(shift + vec2(0.7548776662, 0.5698402910) * float(index * kTries + i));
+        vec2 within = fract(shift + vec2(0.7548776662, 0.5698402910) * float(index * kPixelTries + i));
         uvec2 size = uvec2(camera.width, camera.height);
         uvec2 pixel = min(uvec2((cell + within) / float(cells) * vec2(size)), size - 1u);
         GBufferTexel texel = texels[pixel.y * size.x + pixel.x];

@@ -17,9 +17,9 @@ uniform uint map_count;
 
 // Returns whether the texel and its four neighbours show no surface. Single empty texels are holes between splats.
 bool is_open(uint map, ivec2 texel) {
-    const ivec2 kSteps[5] = ivec2[](ivec2(0, 0), ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
+    const ivec2 kAround[5] = ivec2[](ivec2(0, 0), ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
     for (int i = 0; i < 5; ++i) {
-        ivec2 at = clamp(texel + kSteps[i], ivec2(0), ivec2(int(map_side) - 1));
+        ivec2 at = clamp(texel + kAround[i], ivec2(0), ivec2(int(map_side) - 1));
         if (atlas[texel_index(map, uvec2(at))] != kNothing) return false;
     }
     return true;

@@ -1,6 +1,7 @@
 // OpenCL beside OpenGL: the surfels of a frame are copied there and give the same sums.
 #include "gi/device/cl/cl_device.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -73,6 +74,7 @@ TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
     ASSERT_TRUE(areas.download(0, std::as_writable_bytes(std::span(sums))));
 
     const auto on_host = flat.download_all<FlatSurfel>(count);
+    EXPECT_TRUE(std::ranges::all_of(on_host, [](const FlatSurfel& s) { return s.edges == kNoEdges; }));
     double all = 0;
     for (uint32_t part = 0; part < parts; ++part) {
         float expected = 0;

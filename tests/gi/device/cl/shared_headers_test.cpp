@@ -13,8 +13,10 @@
 #include "gi/shared/brdf.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/clip.h"
+#include "gi/shared/disc.h"
 #include "gi/shared/environment.h"
 #include "gi/shared/flat_surfel.h"
+#include "gi/shared/frame.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/light.h"
 #include "gi/shared/surfel_code.h"
@@ -59,7 +61,8 @@ TEST_F(SharedHeadersInOpenCl, EachCompilesAlone) {
 }
 
 TEST_F(SharedHeadersInOpenCl, StructsHaveTheSameLayoutAsOnTheHost) {
-    std::set<std::string> compared = {"Reflectance"};  // no buffer holds any
+    std::set<std::string> compared = {"Reflectance", "ViewDisc", "DiscHit", "DiscPicture",
+                                      "DiscBox"};  // no buffer holds any
     std::vector<uint32_t> expected;
     std::string text = "kernel void test(global uint* out) { uint i = 0; global char* start = 0;\n";
     const auto compare = [&](const std::string& type, const std::string& field, size_t size, size_t offset) {
@@ -74,7 +77,7 @@ TEST_F(SharedHeadersInOpenCl, StructsHaveTheSameLayoutAsOnTheHost) {
     LUCARNE_COMPARE(CutBlock, lod);
     LUCARNE_COMPARE(CutItem, size);
     LUCARNE_COMPARE(CutItem, child);
-    LUCARNE_COMPARE(FlatSurfel, material);
+    LUCARNE_COMPARE(FlatSurfel, edges);
     LUCARNE_COMPARE(GBufferTexel, material);
     LUCARNE_COMPARE(Light, extent);
     LUCARNE_COMPARE(Light, kind);
@@ -106,7 +109,7 @@ using octree::surfel_area, octree::surfel_radius;
 // Each sample maps 16 numbers in [0, 1) to four results.
 // clang-format off
 LUCARNE_IN_BOTH(kSamplesText,
-LUCARNE_CONST uint kSamples = 10u;
+LUCARNE_CONST uint kSamples = 14u;
 
 LUCARNE_FN vec3 rgb_of(vec4 v) { return vec3(v.x, v.y, v.z); }
 LUCARNE_FN vec3 unit_of(vec4 v) { return normalize(rgb_of(v) - 0.5f); }
@@ -171,6 +174,55 @@ LUCARNE_FN vec4 environment_sample(vec4 a) {
     vec2 place = environment_place(unit_of(a), a.w);
     return vec4(place.x, place.y, cube_face(unit_of(a)) == 0u ? 1.0f : 0.0f, kPi);
 }
+LUCARNE_FN vec4 camera_sample(vec4 a, vec4 b, vec4 c) {
+    CameraView view;
+    view.origin = with(rgb_of(a), 0.01f);
+    view.forward = with(unit_of(b), 0.0f);
+    vec3 right = vec3(0.0f);
+    vec3 up = vec3(0.0f);
+    frame_about(unit_of(b), LUCARNE_REF(right), LUCARNE_REF(up));
+    view.right = with(right, a.w - 0.5f);
+    view.up = with(up, b.w - 0.5f);
+    view.width = 64u;
+    view.height = 48u;
+    view.projection = c.w < 0.5f ? kPerspective : kOrthographic;
+    vec2 at = 40.0f * vec2(c.x, c.y) + 1.0f;
+    GBufferTexel texel;
+    texel.depth = 1.0f + c.z;
+    vec3 p = texel_position(view, at - 0.5f, texel) - toward_viewer(view, view_point(view, at, 2.0f));
+    float depth = 0.0f;
+    vec2 place = view_place(view, view_point(view, at, 1.0f + c.z), LUCARNE_REF(depth));
+    return with(p + view_offset(view, at, depth), place.x * place.y + pixel_height(view, depth));
+}
+LUCARNE_FN vec4 texel_sample(vec4 a, vec4 b) {
+    GBufferTexel texel;
+    texel.normal = bits_of(a);
+    texel.albedo = bits_of(b) & ~kSurfelHasNormal;
+    texel.material = bits_of(vec4(b.z, b.w, 0.0f, 0.0f)) & 0x7bffffffu;
+    return with(texel_normal(texel) + texel_albedo(texel), texel_radius(texel) + float(texel_material(texel)));
+}
+LUCARNE_FN ViewDisc disc_of(vec4 a, vec4 b) {
+    ViewDisc disc;
+    disc.centre = vec3(a.x - 0.5f, a.y - 0.5f, 2.0f + a.z);
+    disc.normal = normalize(vec3(b.x - 0.5f, b.y - 0.5f, -1.0f));
+    disc.radius = 0.1f + a.w;
+    disc.extent = disc_reach(disc.radius, disc.normal.z);
+    disc.push = kRimPush * disc.radius;
+    return disc;
+}
+LUCARNE_FN vec4 disc_sample(vec4 a, vec4 b, vec4 c) {
+    ViewDisc disc = disc_of(a, b);
+    vec3 ray = vec3(c.x - 0.5f, c.y - 0.5f, 1.0f);
+    DiscHit hit = meet_disc(disc.centre, disc.normal, ray);
+    uint key = disc_key(disc, vec3(0.0f), ray, 0.01f, true);
+    return vec4(hit.t, hit.distance2, disc_depth(disc, vec3(0.0f), ray), uintBitsToFloat(key));
+}
+LUCARNE_FN vec4 range_sample(vec4 a, vec4 b) {
+    ViewDisc disc = disc_of(a, b);
+    vec2 x = disc_range(disc, disc.centre.x, disc.normal.x, false);
+    vec2 y = disc_range(disc, disc.centre.y, disc.normal.y, true);
+    return vec4(x.x, x.y, y.x, y.y);
+}
 
 LUCARNE_FN vec4 sample_of(uint which, vec4 a, vec4 b, vec4 c, vec4 d) {
     if (which == 0u) return brdf_sample(a, b, c, d);
@@ -182,13 +234,18 @@ LUCARNE_FN vec4 sample_of(uint which, vec4 a, vec4 b, vec4 c, vec4 d) {
     if (which == 6u) return size_sample(a, b);
     if (which == 7u) return clip_sample(a, b, c, d);
     if (which == 8u) return screen_sample(a);
-    return environment_sample(a);
+    if (which == 9u) return environment_sample(a);
+    if (which == 10u) return camera_sample(a, b, c);
+    if (which == 11u) return texel_sample(a, b);
+    if (which == 12u) return disc_sample(a, b, c);
+    return range_sample(a, b);
 }
 )
 // clang-format on
 
 constexpr const char* kSampleNames[] = {"brdf",   "irradiance", "direction", "octahedral", "colour",
-                                        "surfel", "size",       "clip",      "screen",     "environment"};
+                                        "surfel", "size",       "clip",      "screen",     "environment",
+                                        "camera", "texel",      "disc",      "range"};
 
 TEST_F(SharedHeadersInOpenCl, FunctionsReturnTheValuesOfTheHost) {
     ASSERT_EQ(std::size(kSampleNames), kSamples);

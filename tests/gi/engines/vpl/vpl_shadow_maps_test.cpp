@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/engines/vpl/shadow_maps/texel.h"
 #include "gi/raster/native/native.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -13,9 +14,7 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr uint32_t kEmpty = 0xffffffffu;
-
-/// The maps on the host, decoded as parabolic.glsl encodes them.
+/// The maps on the host.
 struct Maps {
     AtlasLayout layout;
     std::vector<uint32_t> texels;
@@ -24,12 +23,6 @@ struct Maps {
 
     uint32_t at(uint32_t map, uint32_t x, uint32_t y) const {
         return texels[(size_t{map} * layout.side + y) * layout.side + x];
-    }
-    static float distance(uint32_t texel) {
-        const uint32_t bits = ((texel >> 16) + (111u << 11)) << 12 | 0x800u;
-        float value;
-        std::memcpy(&value, &bits, sizeof value);
-        return value;
     }
     /// Returns the unit direction of the central ray of a texel, for a VPL that looks along +z; zero outside
     /// the hemisphere.
@@ -109,12 +102,12 @@ TEST_P(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
     size_t hits = 0;
     const Maps maps = draw(wall, {upward()}, 128);
     maps.each(0, [&](const glm::vec3& ray, uint32_t texel) {
-        if (texel == kEmpty) return;
+        if (texel == kNothing) return;
         const float truth = glm::dot(normal, glm::vec3(0, 0, 2)) / glm::dot(normal, ray);
         const glm::vec3 hit = truth * ray;
         if (std::max(std::abs(hit.x), std::abs(hit.y)) > 3.7f) return;  // skip the rims
         ++hits;
-        EXPECT_NEAR(Maps::distance(texel) / truth, 1, .01) << ray.x << " " << ray.y;
+        EXPECT_NEAR(map_distance(texel) / truth, 1, .01) << ray.x << " " << ray.y;
     });
     EXPECT_GT(hits, 5000u);
 }
@@ -130,7 +123,7 @@ TEST_P(VplShadowMaps, redWallBehindAWhiteOneNeverShowsThrough) {
         maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
             if (ray.z < .4f) return;  // the white wall ends 18 degrees above the horizon
             ++rays;
-            if (texel == kEmpty || Maps::distance(texel) * ray.z > 1.5f) ++through;
+            if (texel == kNothing || map_distance(texel) * ray.z > 1.5f) ++through;
         });
     EXPECT_GT(rays, 15'000u);
     EXPECT_LE(static_cast<double>(through), .001 * static_cast<double>(rays));
@@ -165,7 +158,7 @@ TEST_P(VplShadowMaps, openDoorStaysOpenAndAClosedOneClosed) {
                 const glm::vec3 at = ray * (2 / std::max(ray.z, .1f));
                 if (std::max(std::abs(at.x), std::abs(at.y)) > half) return;
                 ++rays;
-                if (Maps::distance(texel) * ray.z > 4) ++through;
+                if (map_distance(texel) * ray.z > 4) ++through;
             });
         EXPECT_GT(rays, 200u);
         return static_cast<double>(through) / static_cast<double>(rays);
@@ -185,12 +178,12 @@ TEST_P(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
         size_t rays = 0, filled = 0;
         maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
             if (map % 2) {
-                EXPECT_EQ(texel, kEmpty) << map;
+                EXPECT_EQ(texel, kNothing) << map;
                 return;
             }
             if (ray.z < .12f) return;  // splats are thinner than a texel here
             ++rays;
-            filled += texel != kEmpty;
+            filled += texel != kNothing;
         });
         EXPECT_GE(filled, rays * 998 / 1000) << map;
     }
@@ -203,7 +196,7 @@ TEST_P(VplShadowMaps, ownSurfaceAndWhatLiesBehindItAreNotDrawn) {
     VplLight light = upward();
     light.normal.w = .02f;
     const Maps maps = draw(floor, {light}, 64);
-    maps.each(0, [&](const glm::vec3& ray, uint32_t texel) { EXPECT_EQ(texel, kEmpty) << ray.z; });
+    maps.each(0, [&](const glm::vec3& ray, uint32_t texel) { EXPECT_EQ(texel, kNothing) << ray.z; });
 }
 
 TEST_P(VplShadowMaps, atlasesAreSharedOutAndTooManyMapsAreRefused) {
@@ -275,9 +268,9 @@ TEST_P(NativeVplShadowMaps, NativeMapsAreThoseOfTheShaders) {
     size_t drawn = 0, others = 0, other_sources = 0;
     for (size_t i = 0; i < maps.texels.size(); ++i) {
         const uint32_t a = maps.texels[i], b = shaders.texels[i];
-        drawn += b != kEmpty;
-        const bool same = a == b || (a != kEmpty && b != kEmpty &&
-                                     std::abs(Maps::distance(a) / Maps::distance(b) - 1) < 1e-3f);
+        drawn += b != kNothing;
+        const bool same = a == b || (a != kNothing && b != kNothing &&
+                                     std::abs(map_distance(a) / map_distance(b) - 1) < 1e-3f);
         others += !same;
         const uint32_t ids = (1u << maps.id_bits) - 1;
         other_sources += (maps.sources[i] & ids) != (shaders.sources[i] & ids);

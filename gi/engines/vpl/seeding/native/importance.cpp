@@ -76,7 +76,7 @@ inline void importance_row(const ImportanceJob& job, int y, glm::vec2* row) {
         const F cosine = over(one, hn::Sqrt(dot(middle, middle)));
         const F solid_angle = mul(set(job.pixel_area), mul(mul(cosine, cosine), cosine));
         const V3 kd = diffuse_reflectance(job.tables, texel.albedo, texel.material);
-        const F reflected = dot(kd, glm::vec4(0.2126f, 0.7152f, 0.0722f, 0));
+        const F reflected = dot(kd, glm::vec4(kRedWeight, kGreenWeight, kBlueWeight, 0));
         const F weight = hn::IfThenElseZero(lit, mul(mul(intensity, solid_angle), reflected));
         alignas(64) float lanes[2 * kLanes];
         hn::StoreInterleaved2(weight, hn::IfThenElseZero(lit, one), df, lanes);

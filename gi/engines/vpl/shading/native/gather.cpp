@@ -7,7 +7,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/engines/vpl/shading/separation.h"
 #include "gi/engines/vpl/shadow_maps/native/map_frame.h"
+#include "gi/engines/vpl/shadow_maps/splats.h"
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
 
@@ -17,13 +19,11 @@
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include "gi/engines/vpl/shading/native/surfaces-inl.h"
+#include "gi/engines/vpl/shadow_maps/native/texel-inl.h"
 
 #ifndef LUCARNE_NATIVE_GATHER_ONCE
 #define LUCARNE_NATIVE_GATHER_ONCE
 namespace lucarne::gi::vpl::native {
-
-// As in texel.h.
-constexpr uint32_t kNoTexel = UINT32_MAX;
 
 /// A VPL with the frame of its map.
 struct GatherLight {
@@ -83,16 +83,17 @@ HWY_INLINE Pair pair_of(const GatherLight& light, const Receivers& to) {
             dot(to.normal, light.normal)};
 }
 
-/// pair_share() of gather.glsl for points that face each other.
+/// pair_share() of gather.glsl, with separate_share(), for points that face each other.
 HWY_INLINE F pair_share(const Receivers& to, const Pair& pair) {
     const F clearance = mul(hn::Min(pair.own, pair.height), to.per_radius),
             most = hn::Max(pair.own, pair.height), distance = hn::Sqrt(pair.d2);
     const F opposite = clamped(hn::Neg(pair.cosine));
     const auto mixed = [&](float a, float b) { return add(set(a), mul(set(b - a), opposite)); };
-    const F width = mixed(0.6f - kRimPush, 2.0f), rise_width = mul(mixed(0.07f, 0.1f), distance);
+    const F width = mixed(kClearRange, kClearRangeFacing),
+            rise_width = mul(mixed(kRiseRange, kRiseRangeFacing), distance);
     const F per_widths = over(set(1.0f), mul(width, rise_width));
-    const F clear = mul(sub(clearance, mixed(kRimPush, 2.0f)), mul(rise_width, per_widths)),
-            risen = mul(sub(most, mul(mixed(0.035f, 0.1f), distance)), mul(width, per_widths));
+    const F clear = mul(sub(clearance, mixed(kClear, kClearFacing)), mul(rise_width, per_widths)),
+            risen = mul(sub(most, mul(mixed(kRise, kRiseFacing), distance)), mul(width, per_widths));
     return mul(clamped(clear), clamped(risen));
 }
 
@@ -128,7 +129,8 @@ HWY_INLINE F disc_form_factor(const GatherLight& light, const Pair& pair) {
     return mul(set(kPi * 0.5f), add(cut, lossless));
 }
 
-/// The normals that a map's texels hold, unnormalised: map_normal() of parabolic.glsl.
+/// The normals that a map's texels hold, unnormalised: map_normal() of texel.h without its rounding to 16
+/// bits.
 HWY_INLINE V3 blocker_normals(U texel) {
     const auto fraction = [&](U bits) {
         return sub(mul(to_float(hn::And(bits, word(63))), set(2 / 63.0f)), set(1.0f));
@@ -164,22 +166,18 @@ HWY_INLINE Mask sees(const GatherJob& job, const GatherLight& light, const Pair&
         return add(mul(hn::ConvertTo(Floats(), at), set(job.texel)), set(0.5f * job.texel - 1));
     };
     const F u = centre(column), v = centre(row), uv2 = add(mul(u, u), mul(v, v));
-    const U distance_bits =
-        hn::Or(hn::ShiftLeft<12>(hn::Add(hn::ShiftRight<16>(nearest), word(111u << 11))), word(0x800u));
-    const F distance = hn::BitCast(Floats(), distance_bits), along = over(distance, add(one, uv2));
+    const F distance = map_distances(Words(), nearest), along = over(distance, add(one, uv2));
     const F twice = add(along, along);
     const V3 ahead{sub(mul(u, twice), receiver.x), sub(mul(v, twice), receiver.y),
                    sub(mul(sub(one, uv2), along), receiver.z)};
     const V3 blocker = blocker_normals(nearest);
     const F length = hn::Sqrt(dot(blocker, blocker));
-    // 2^(code - 11)
-    const U exponent = hn::Add(hn::And(hn::ShiftRight<12>(nearest), word(15)), word(127 - 11));
-    const F radius = hn::BitCast(Floats(), hn::ShiftLeft<23>(exponent));
+    const F radius = map_radii(Words(), nearest);
     const F error = mul(set(kSheetTolerance), hn::Max(radius, mul(set(input.splat_angle), distance)));
     const F width = mul(set(job.width), distance);
     // Both sides of the test against the blocker's plane are times the length of its normal.
     const F behind = add(mul(add(error, width), length), mul(width, hn::Max(dot(normal, blocker), zero)));
-    Mask seen = hn::Or(hn::Le(receiver.z, zero), hn::RebindMask(Floats(), hn::Eq(nearest, word(kNoTexel))));
+    Mask seen = hn::Or(hn::Le(receiver.z, zero), hn::RebindMask(Floats(), hn::Eq(nearest, word(kNothing))));
     seen = hn::Or(seen, hn::Le(dot(normal, ahead), error));
     seen = hn::Or(seen, hn::Le(dot(blocker, ahead), behind));
     return hn::And(lit, seen);
@@ -359,8 +357,8 @@ void gather(const GatherInput& input, uint32_t n, const GatherOutput& output) {
     for (const VplLight& light : input.lights)
         lights.push_back(gather_light(light, input.camera.origin, lights.size() * input.side * input.side));
     const auto texels = static_cast<float>(input.side);
-    const GatherJob job{input,      static_cast<int>(n),     lights, output, texels,
-                        2 / texels, std::sqrt(8.0f) / texels};
+    const GatherJob job{input,      static_cast<int>(n),    lights, output, texels,
+                        2 / texels, map_texel_angle(texels)};
     parallel_ranges(input.camera.height, 32, [&](size_t first, size_t end) {
         HWY_DYNAMIC_DISPATCH(GatherRows)(job, static_cast<int>(first), static_cast<int>(end));
     });

@@ -1,14 +1,13 @@
 #include "gi/engines/vpl/shadow_maps/native/close.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
-#include "gi/engines/vpl/shadow_maps/native/map_frame.h"
-#include "gi/shared/surfel_code.h"
+#include "gi/engines/vpl/shadow_maps/splats.h"
+#include "gi/engines/vpl/shadow_maps/texel.h"
 #include "io/core/parallel.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -16,26 +15,11 @@
 #define HWY_TARGET_INCLUDE "gi/engines/vpl/shadow_maps/native/close.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
-#include "gi/raster/native/vectors-inl.h"
+#include "gi/engines/vpl/shadow_maps/native/texel-inl.h"
 
 #ifndef LUCARNE_NATIVE_CLOSE_ONCE
 #define LUCARNE_NATIVE_CLOSE_ONCE
 namespace lucarne::gi::vpl::native {
-
-// As in texel.h, pyramid.glsl, parabolic.glsl and close.comp.
-constexpr uint32_t kNoTexel = UINT32_MAX, kOpenTexel = UINT32_MAX - 1;
-constexpr float kNormalError = 0.05f;
-
-inline float texel_distance(uint32_t texel) {
-    return std::bit_cast<float>(((texel >> 16) + (111u << 11)) << 12 | 0x800u);
-}
-inline float texel_radius(uint32_t texel) {
-    return std::bit_cast<float>(((texel >> 12 & 15u) + 127 - 11) << 23);  // 2^(code - 11)
-}
-inline glm::vec3 texel_normal(uint32_t texel) {
-    const glm::vec2 p = (glm::vec2(texel & 63u, texel >> 6 & 63u) - 31.5f) / 31.5f;
-    return decode_octahedral(packSnorm2x16(p));
-}
 
 /// Decides which fringes of a map are supported, supported() in close.comp.
 class Support {
@@ -43,12 +27,12 @@ class Support {
     Support(const CloseMemory& memory, const uint32_t* cores) : memory_(memory), cores_(cores) {}
 
     bool holds(const glm::ivec2& at, uint32_t own) const {
-        constexpr int kAxes[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-        const Fringe fringe{point(at, own), texel_normal(own), texel_distance(own), radius(own)};
-        return std::ranges::any_of(kAxes, [&](const auto& axis) {
-            const glm::ivec2 step(axis[0], axis[1]);
-            return continues(fringe, at, step) && continues(fringe, at, -step);
-        });
+        const Fringe fringe{point(at, own), map_normal(own), map_distance(own), radius(own)};
+        for (int axis = 0; axis < kSupportAxes; ++axis) {
+            const glm::ivec2 step = support_axis(axis);
+            if (continues(fringe, at, step) && continues(fringe, at, -step)) return true;
+        }
+        return false;
     }
 
  private:
@@ -62,13 +46,13 @@ class Support {
     glm::vec3 point(const glm::ivec2& at, uint32_t texel) const {
         const glm::vec2 uv = centre(at);
         const float square = glm::dot(uv, uv);
-        return glm::vec3(2.0f * uv, 1 - square) * (texel_distance(texel) / (1 + square));
+        return glm::vec3(2.0f * uv, 1 - square) * (map_distance(texel) / (1 + square));
     }
     float radius(uint32_t texel) const {
-        return std::max(texel_radius(texel), memory_.splat_angle * texel_distance(texel));
+        return std::max(map_radius(texel), memory_.splat_angle * map_distance(texel));
     }
     bool continues(const Fringe& fringe, const glm::ivec2& at, const glm::ivec2& direction) const {
-        for (int step = 1; step <= 2; ++step) {
+        for (int step = 1; step <= kSupportReach; ++step) {
             const glm::ivec2 other = at + step * direction;
             const glm::vec2 uv = centre(glm::max(other, glm::ivec2(0)));
             if (std::min(other.x, other.y) < 0 || glm::dot(uv, uv) >= 1 || goes_on(fringe, other))
@@ -79,11 +63,11 @@ class Support {
     bool goes_on(const Fringe& fringe, const glm::ivec2& other) const {
         const uint32_t texel =
             cores_[static_cast<size_t>(other.y) * memory_.side + static_cast<size_t>(other.x)];
-        if (texel == kNoTexel) return false;
-        if (texel_distance(texel) <= fringe.distance + 2 * fringe.radius) return true;
+        if (texel == kNothing) return false;
+        if (map_distance(texel) <= fringe.distance + 2 * fringe.radius) return true;
         const glm::vec3 offset = point(other, texel) - fringe.point;
         const float tolerance = kSheetTolerance * fringe.radius +
-                                std::sqrt(8.0f) / static_cast<float>(memory_.side) * fringe.distance;
+                                map_texel_angle(static_cast<float>(memory_.side)) * fringe.distance;
         return std::abs(glm::dot(fringe.normal, offset)) <= kNormalError * glm::length(offset) + tolerance;
     }
 
@@ -102,28 +86,18 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Eight = hn::CappedTag<uint32_t, 8>;
 using Four = hn::CappedTag<uint32_t, 4>;
 
-template <class D>
-HWY_INLINE hn::Vec<hn::RebindToFloat<D>> distances(D d, hn::Vec<D> texels) {
-    const auto steps = hn::Add(hn::ShiftRight<16>(texels), hn::Set(d, 111u << 11));
-    return hn::BitCast(hn::RebindToFloat<D>(), hn::Or(hn::ShiftLeft<12>(steps), hn::Set(d, 0x800u)));
-}
 /// sheet_end() of pyramid.glsl.
 template <class D>
-HWY_INLINE hn::Vec<hn::RebindToFloat<D>> sheet_ends(D d, hn::Vec<D> texels, float splat_angle) {
+HWY_INLINE FloatsOf<D> sheet_ends(D d, hn::Vec<D> texels, float splat_angle) {
     const hn::RebindToFloat<D> df;
-    const auto distance = distances(d, texels);
-    const auto exponent = hn::Add(hn::And(hn::ShiftRight<12>(texels), hn::Set(d, 15)), hn::Set(d, 127 - 11));
-    const auto radius = hn::BitCast(df, hn::ShiftLeft<23>(exponent));
-    const auto splat = hn::Max(radius, hn::Mul(hn::Set(df, splat_angle), distance));
+    const auto distance = map_distances(d, texels);
+    const auto splat = hn::Max(map_radii(d, texels), hn::Mul(hn::Set(df, splat_angle), distance));
     return hn::Add(distance, hn::Mul(hn::Set(df, 2.0f), splat));
 }
-/// pack_map_texel() of parabolic.glsl.
+/// A texel at another distance than the one whose surface it shows.
 template <class D>
-HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<hn::RebindToFloat<D>> distance, hn::Vec<D> surface) {
-    const hn::RebindToFloat<D> df;
-    const auto inside = hn::Min(hn::Max(distance, hn::Set(df, 1.6e-5f)), hn::Set(df, 65000.0f));
-    const auto steps = hn::Sub(hn::ShiftRight<12>(hn::BitCast(d, inside)), hn::Set(d, 111u << 11));
-    return hn::Or(hn::ShiftLeft<16>(steps), hn::And(surface, hn::Set(d, 0xffffu)));
+HWY_INLINE hn::Vec<D> moved(D d, FloatsOf<D> distance, hn::Vec<D> texels) {
+    return pack_map_texels(d, distances_within(d, distance), hn::And(texels, hn::Set(d, 0xffffu)));
 }
 template <class D>
 HWY_INLINE hn::Mask<D> below(D d, hn::Vec<D> texels, uint32_t limit) {  // unsigned
@@ -164,7 +138,7 @@ void pull(const CloseMemory& memory, const uint32_t* texels, uint32_t* coarse) {
     const Four d;
     const hn::RebindToFloat<Four> df;
     const size_t side = memory.side, half = side / 2;
-    const auto open = hn::Set(d, kOpenTexel);
+    const auto open = hn::Set(d, kOpen);
     for (size_t y = 0; y < half; ++y)
         for (size_t x = 0; x < half; x += hn::Lanes(d)) {
             hn::Vec<Four> child[4];
@@ -174,17 +148,16 @@ void pull(const CloseMemory& memory, const uint32_t* texels, uint32_t* coarse) {
             const auto deepest = sheet_ends(d, nearest, memory.splat_angle);
             auto sum = hn::Zero(df), support = hn::Zero(df);
             for (const auto& texel : child) {
-                const auto distance = distances(d, texel);
+                const auto distance = map_distances(d, texel);
                 const auto counts =
-                    hn::And(hn::RebindMask(df, below(d, texel, kOpenTexel)), hn::Le(distance, deepest));
+                    hn::And(hn::RebindMask(df, below(d, texel, kOpen)), hn::Le(distance, deepest));
                 sum = hn::Add(sum, hn::IfThenElseZero(counts, distance));
                 support = hn::Add(support, hn::IfThenElseZero(counts, hn::Set(df, 1.0f)));
             }
             const auto enough = hn::RebindMask(d, hn::Ge(support, hn::Set(df, 3.0f)));
-            const auto mean = packed(d, hn::Div(sum, hn::Max(support, hn::Set(df, 1.0f))), nearest);
+            const auto mean = moved(d, hn::Div(sum, hn::Max(support, hn::Set(df, 1.0f))), nearest);
             const auto value = hn::IfThenElse(enough, mean, open);
-            hn::StoreU(hn::IfThenElse(below(d, nearest, kOpenTexel), value, nearest), d,
-                       coarse + y * half + x);
+            hn::StoreU(hn::IfThenElse(below(d, nearest, kOpen), value, nearest), d, coarse + y * half + x);
         }
 }
 
@@ -207,10 +180,10 @@ void push(const CloseMemory& memory, const uint32_t* coarse, uint32_t* texels) {
             };
             auto nearest = texel(row, parent);
             const auto known = hn::And(
-                below(d, own, kOpenTexel),
-                hn::RebindMask(d, hn::Le(distances(d, own), sheet_ends(d, nearest, memory.splat_angle))));
-            auto fills = hn::AndNot(known, below(d, nearest, kOpenTexel));
-            fills = hn::AndNot(hn::Eq(own, hn::Set(d, kOpenTexel)), fills);
+                below(d, own, kOpen),
+                hn::RebindMask(d, hn::Le(map_distances(d, own), sheet_ends(d, nearest, memory.splat_angle))));
+            auto fills = hn::AndNot(known, below(d, nearest, kOpen));
+            fills = hn::AndNot(hn::Eq(own, hn::Set(d, kOpen)), fills);
             if (hn::AllFalse(d, fills)) continue;
             const auto beside = hn::Sub(hn::Add(parent, hn::ShiftLeft<1>(hn::And(column, one))), one);
             const auto other = hn::Min(hn::Max(beside, hn::Zero(di)), last);
@@ -221,12 +194,12 @@ void push(const CloseMemory& memory, const uint32_t* coarse, uint32_t* texels) {
             const auto deepest = sheet_ends(d, nearest, memory.splat_angle);
             auto mean = hn::Zero(df);
             for (size_t i = 0; i < 4; ++i) {
-                const auto distance = distances(d, around[i]);
-                fills = hn::And(fills, hn::And(below(d, around[i], kOpenTexel),
-                                               hn::RebindMask(d, hn::Le(distance, deepest))));
+                const auto distance = map_distances(d, around[i]);
+                fills = hn::And(
+                    fills, hn::And(below(d, around[i], kOpen), hn::RebindMask(d, hn::Le(distance, deepest))));
                 mean = hn::Add(mean, hn::Mul(hn::Set(df, kWeights[i]), distance));
             }
-            hn::StoreU(hn::IfThenElse(fills, packed(d, mean, nearest), own), d, at);
+            hn::StoreU(hn::IfThenElse(fills, moved(d, mean, nearest), own), d, at);
         }
     }
 }

@@ -8,7 +8,7 @@
 
 #include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/engines/vpl/shadow_maps/queue.h"
-#include "gi/shared/brdf.h"
+#include "gi/engines/vpl/shadow_maps/splats.h"
 #include "gi/shared/surfel.h"
 #include "io/core/parallel.h"
 
@@ -17,15 +17,12 @@
 #define HWY_TARGET_INCLUDE "gi/engines/vpl/shadow_maps/native/splat.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
+#include "gi/engines/vpl/shadow_maps/native/texel-inl.h"
 #include "gi/raster/native/vectors-inl.h"
 
 #ifndef LUCARNE_NATIVE_SPLAT_ONCE
 #define LUCARNE_NATIVE_SPLAT_ONCE
 namespace lucarne::gi::vpl::native {
-
-// As in thinning.glsl, fringe.glsl and parabolic.glsl, which explain them.
-constexpr float kLeastSlant = 0.1f, kLargestSplat = 3.1623f, kThinnedCover = 4;
-constexpr float kCore = 0.5f;
 
 /// Maps that are drawn together: blocks are decoded once for all of them.
 constexpr uint32_t kGroup = 16;
@@ -34,7 +31,7 @@ constexpr uint32_t kGroup = 16;
 struct CasterTables {
     std::array<float, 128> radii, scales;
     CasterTables(float cut_size, float splat_angle) {
-        const float needed = kPi / kThinnedCover * splat_angle * splat_angle;
+        const float needed = thinned_area(splat_angle);
         for (size_t code = 0; code < 128; ++code) {
             const float steps = static_cast<float>(code) - 127;
             radii[code] = code ? std::exp2(steps / 6) * cut_size : 0.0f;
@@ -122,7 +119,7 @@ uint32_t meet(const SplatJob& job, const MapFrame* maps, uint32_t block) {
     const float* bounds = job.memory.bounds + size_t{block} * kBoundsWords;
     const glm::vec3 low(bounds[0], bounds[1], bounds[2]), high(bounds[4], bounds[5], bounds[6]);
     const float most_area = bounds[3], most_radius = bounds[7];
-    const float needed = kPi / kThinnedCover * job.layout.splat_angle * job.layout.splat_angle;
+    const float needed = thinned_area(job.layout.splat_angle);
     uint32_t met = 0;
     for (uint32_t i = 0; i < job.map_end - job.first_map; ++i) {
         const glm::vec3 centre(maps[i].centre), normal(maps[i].normal);
@@ -175,7 +172,7 @@ size_t enter(const SplatJob& job, const MapFrame& map, const Casters& casters, C
     return count;
 }
 
-/// Discs in a map, lane by lane; see `Disc` in disc.glsl.
+/// Discs in a map, lane by lane; see MapDisc in disc.glsl.
 struct MapDiscs {
     alignas(64) float x[kLanes], y[kLanes], z[kLanes], nx[kLanes], ny[kLanes], nz[kLanes];
     alignas(64) float radius2[kLanes], core2[kLanes], lowest[kLanes], offset[kLanes];
@@ -183,13 +180,13 @@ struct MapDiscs {
     alignas(64) int32_t x0[kLanes], y0[kLanes], x1[kLanes], y1[kLanes];
 };
 
-/// map_surface() of parabolic.glsl.
+/// map_surface() of texel.h.
 HWY_INLINE U map_surface(F radius, const V3& normal) {
     const Ints di;
     // floor(log2(radius) + 11.5) is the exponent of radius * sqrt(2), plus 11.
     const auto exponent =
         hn::Sub(hn::BitCast(di, hn::ShiftRight<23>(hn::BitCast(Words(), mul(radius, set(1.41421356f))))),
-                hn::Set(di, 127 - 11));
+                hn::Set(di, static_cast<int32_t>(kRadiusBias)));
     const auto code = hn::Min(hn::Max(exponent, hn::Zero(di)), hn::Set(di, 15));
     const U bits = encode_octahedral(normal);
     const auto steps = [&](hn::Vec<Ints> fraction) {
@@ -200,7 +197,7 @@ HWY_INLINE U map_surface(F radius, const V3& normal) {
     return hn::Or(hn::Or(hn::ShiftLeft<12>(hn::BitCast(Words(), code)), hn::ShiftLeft<6>(v)), u);
 }
 
-/// Computes discs and their boxes, disc_over() and disc_box() in disc.glsl. Returns those that may be hit.
+/// Computes discs and their boxes, disc_over() and map_box() in disc.glsl. Returns those that may be hit.
 HWY_INLINE uint32_t set_up(const SplatJob& job, const MapFrame& map, const Casters& from, size_t at,
                            size_t count, MapDiscs& discs) {
     const Floats df;
@@ -218,7 +215,7 @@ HWY_INLINE uint32_t set_up(const SplatJob& job, const MapFrame& map, const Caste
     const F radius = hn::Max(own, grown);
     const F cosine = dot(normal, map.normal);
     const F lowest =
-        hn::IfThenElseZero(hn::Gt(hn::Abs(cosine), set(0.5f)), mul(set(kSheetTolerance), radius));
+        hn::IfThenElseZero(hn::Gt(hn::Abs(cosine), set(kOwnSheet)), mul(set(kSheetTolerance), radius));
     const V3 centre{dot(offset, map.tangent), dot(offset, map.bitangent), dot(offset, map.normal)};
     const F top = add(centre.z, mul(radius, hn::Sqrt(hn::Max(sub(one, mul(cosine, cosine)), zero))));
     Mask hit = hn::And(hn::Gt(top, lowest), hn::FirstN(df, count - at));
@@ -317,10 +314,8 @@ HWY_INLINE void draw(const SplatJob& job, const MapDiscs& discs, size_t lane, ui
             const auto in_core = hn::Le(square, core2);
             const auto core = hn::And(hit, in_core), rest = hn::AndNot(in_core, hit);
             const Row distance = hn::Mul(t, hn::Add(one, uv2));
-            // pack_map_texel() of parabolic.glsl.
-            const Row inside = hn::Min(hn::Max(distance, row_of(1.6e-5f)), row_of(65000.0f));
-            const auto steps = hn::Sub(hn::ShiftRight<12>(hn::BitCast(du, inside)), hn::Set(du, 111u << 11));
-            const auto code = hn::Or(hn::ShiftLeft<16>(steps), surface);
+            const Row inside = distances_within(du, distance);
+            const auto code = pack_map_texels(du, inside, surface);
             const size_t at = first + static_cast<size_t>(y) * job.layout.side + static_cast<size_t>(x);
             take(code, core, job.memory.atlas + at);
             take(code, rest, job.memory.fringe + at);
