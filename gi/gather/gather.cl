@@ -107,10 +107,11 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
 }
 
 // Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
-// and its slot. `side`, `across` and `normal` are the axes of the picture; `rays` are the directions of its pixels, zero
-// where a pixel has no ray.
-void draw(global const WideNode* nodes, const float* rays, float3 start, float3 side, float3 across, float3 normal,
-          float* depths, uint* slots) {
+// and its slot. `side` and `across` are the axes of the picture, which reaches to
+// `scale` along them; `rays` are the directions of its pixels, zero where a pixel has no ray.
+void draw(global const WideNode* nodes, const float* rays, float3 start, float3 side, float3 across, float3 axis,
+          float3 normal, float scale, float* depths, uint* slots) {
+    float pixels = 0.5f * GRID / scale;
     int stack[STACK];
     int top = 0;
     stack[top++] = 0;
@@ -127,8 +128,9 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         // What the discs of the child rise above its middle: those of the point's own surface lie below the start.
         float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
+        above &= dx * axis.x + dy * axis.y + dz * axis.z > -bound;
         int8 thick = (thickness > bound * kThickNode) & (child >= 0);
-        float8 limit = select((float8)(LARGEST_NODE), (float8)(LARGEST_THICK), thick);
+        float8 limit = select((float8)(LARGEST_NODE), (float8)(LARGEST_THICK), thick) * scale;
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         if (any(go)) {
@@ -147,9 +149,9 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         nz = select(nz, dz * nearer, thick);
         // Directions to a disc differ from that to its middle by at most 2 sin(asin(s) / 2) < s (1 + .42 s^2).
         float8 s = disc * nearer;
-        float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * (0.5f * GRID) + 0.5f;
-        float8 px = ((dx * side.x + dy * side.y + dz * side.z) * nearer + 1.0f) * (0.5f * GRID) - 0.5f;
-        float8 py = ((dx * across.x + dy * across.y + dz * across.z) * nearer + 1.0f) * (0.5f * GRID) - 0.5f;
+        float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * pixels + 0.5f;
+        float8 px = (dx * side.x + dy * side.y + dz * side.z) * nearer * pixels + (0.5f * GRID - 0.5f);
+        float8 py = (dx * across.x + dy * across.y + dz * across.z) * nearer * pixels + (0.5f * GRID - 0.5f);
         float left[8], right[8], upper[8], lower[8], x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], plane[8];
         int draws[8];
         vstore8(fmax(ceil(px - extent), 0.0f), 0, left);
@@ -195,15 +197,15 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
 // itself meets the plane of the disc; the pixel that shows that point knows its slot. `lifted`: from the surface to
 // the start, along the axes of the picture.
 uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float depth, float3 ray, float3 direction,
-               float3 lifted, float3 position, float lift) {
+               float3 lifted, float3 position, float lift, float scale) {
     float3 axis = slot_axis(nodes, slot);
     float straight = dot(axis, slot_middle(nodes, slot) - position) / dot(axis, direction);
     if (!(straight > 0.0f) || fabs(straight - depth) > MOST_SHIFT * lift) return slot;
     float3 seen = ray * straight - lifted;
     if (!(seen.z > 0.0f)) return slot;
-    float nearer = rsqrt(dot(seen, seen));
-    int i = clamp((int)((seen.x * nearer + 1.0f) * (0.5f * GRID)), 0, GRID - 1);
-    int j = clamp((int)((seen.y * nearer + 1.0f) * (0.5f * GRID)), 0, GRID - 1);
+    float pixels = rsqrt(dot(seen, seen)) * (0.5f * GRID / scale);
+    int i = clamp((int)(seen.x * pixels + 0.5f * GRID), 0, GRID - 1);
+    int j = clamp((int)(seen.y * pixels + 0.5f * GRID), 0, GRID - 1);
     uint other = slots[j * ROW + i];
     if (other == EMPTY || other == slot) return slot;
     // It has to be the same surface, not what stands beside it.
@@ -214,8 +216,8 @@ uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float
 }
 
 // For each point: the mean radiance of its rays, W/(sr m^2) (times pi: irradiance), and the share of rays that meet
-// nothing. `light`: six floats a slot, the radiance of its front and of its back. `rays`: sets of x, y and z of all
-// pixels; z is 0 where a pixel has no ray.
+// nothing. `light`: six floats a slot, the radiance of its front and of its back. `rays`: sets of x and y of all
+// pixels, in the unit disc; x is over 1 where a pixel has no ray.
 kernel void gather(global const WideNode* nodes, global const float* light, global const GatherPoint* points,
                    global const float* rays, uint sets, uint count, global float4* results) {
     uint number = get_global_id(0);
@@ -224,42 +226,55 @@ kernel void gather(global const WideNode* nodes, global const float* light, glob
     float3 position = (float3)(point.position.x, point.position.y, point.position.z);
     float3 normal = (float3)(point.normal.x, point.normal.y, point.normal.z);
     float3 start = start_of(nodes, point);
+    float3 axis = (float3)(point.axis.x, point.axis.y, point.axis.z);
+    float scale = point.scale;
     float angle = 6.28318531f * fraction_of(point.seed);
-    float3 u = normalize(cross(fabs(normal.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), normal));
-    float3 v = cross(normal, u);
-    float3 side = cos(angle) * u + sin(angle) * v, across = cross(normal, side);
-    global const float* set = rays + (point.seed % sets) * (3 * PIXELS);
+    float3 u = normalize(cross(fabs(axis.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), axis));
+    float3 v = cross(axis, u);
+    float3 side = cos(angle) * u + sin(angle) * v, across = cross(axis, side);
+    global const float* set = rays + (point.seed % sets) * (2 * PIXELS);
 
     float depths[PIXELS], directions[3 * PIXELS];
     uint slots[PIXELS];
     for (int i = 0; i < PIXELS; i += 8) {
-        float8 x = vload8(0, set + i), y = vload8(0, set + PIXELS + i), z = vload8(0, set + 2 * PIXELS + i);
-        vstore8(side.x * x + across.x * y + normal.x * z, 0, directions + i);
-        vstore8(side.y * x + across.y * y + normal.y * z, 0, directions + PIXELS + i);
-        vstore8(side.z * x + across.z * y + normal.z * z, 0, directions + 2 * PIXELS + i);
+        float8 x = vload8(0, set + i), y = vload8(0, set + PIXELS + i);
+        int8 none = x > 1.0f;
+        x *= scale;
+        y *= scale;
+        float8 z = sqrt(fmax(1.0f - x * x - y * y, 0.0f));
+        float8 dx = side.x * x + across.x * y + axis.x * z, dy = side.y * x + across.y * y + axis.y * z;
+        float8 dz = side.z * x + across.z * y + axis.z * z;
+        none |= dx * normal.x + dy * normal.y + dz * normal.z <= 0.0f;
+        vstore8(select(dx, (float8)(0.0f), none), 0, directions + i);
+        vstore8(select(dy, (float8)(0.0f), none), 0, directions + PIXELS + i);
+        vstore8(select(dz, (float8)(0.0f), none), 0, directions + 2 * PIXELS + i);
         vstore8((float8)(NOTHING), 0, depths + i);
         vstore8((uint8)(EMPTY), 0, slots + i);
     }
-    draw(nodes, directions, start, side, across, normal, depths, slots);
+    draw(nodes, directions, start, side, across, axis, normal, scale, depths, slots);
 
     float3 away = start - position, sum = (float3)(0.0f);
-    float3 lifted = (float3)(dot(away, side), dot(away, across), dot(away, normal));
+    float3 lifted = (float3)(dot(away, side), dot(away, across), dot(away, axis));
     uint cast = 0, empty = 0;
     for (int j = 0; j < GRID; ++j)
         for (int i = 0; i < GRID; ++i) {
             int pixel = j * ROW + i;
-            float3 ray = (float3)(set[pixel], set[PIXELS + pixel], set[2 * PIXELS + pixel]);
-            if (!(ray.z > 0.0f)) continue;
+            if (set[pixel] > 1.0f) continue;
             ++cast;
+            float3 direction = (float3)(directions[pixel], directions[PIXELS + pixel], directions[2 * PIXELS + pixel]);
+            float height = dot(direction, normal);
+            if (!(height > 0.0f)) continue;
             uint slot = slots[pixel];
             if (slot == EMPTY) {
                 ++empty;
                 continue;
             }
-            float3 direction = (float3)(directions[pixel], directions[PIXELS + pixel], directions[2 * PIXELS + pixel]);
-            slot = seen_slot(nodes, slots, slot, depths[pixel], ray, direction, lifted, position, point.lift);
+            float x = set[pixel] * scale, y = set[PIXELS + pixel] * scale;
+            float3 ray = (float3)(x, y, sqrt(fmax(1.0f - x * x - y * y, 0.0f)));
+            slot = seen_slot(nodes, slots, slot, depths[pixel], ray, direction, lifted, position, point.lift, scale);
             uint back = dot(slot_axis(nodes, slot), direction) < 0.0f ? 0u : 1u;
-            sum += vload3(2 * slot + back, light);
+            float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
+            sum += weight * vload3(2 * slot + back, light);
         }
     results[number] = (float4)(sum / cast, (float)(empty) / cast);
 }

@@ -11,6 +11,8 @@ namespace lucarne::gi {
 namespace {
 
 constexpr uint32_t kSets = 32;          // of rays; points choose among them
+constexpr float kNoRay = 2;             // as x
+constexpr double kRim = 1 - 1e-6;       // rays in the plane of the surface would meet it
 constexpr size_t kPointsAtOnce = 4096;  // a run of the kernel: short, so that it can be stopped in between
 
 /// A disc in a square holds pi / 4 of its pixels.
@@ -44,19 +46,17 @@ Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> sl
 Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed) {
     if (rays_ && grid_ == grid && seed_ == seed) return {};
     const size_t row = row_for(grid), pixels = grid * row;
-    std::vector<float> rays(kSets * 3 * pixels);
+    std::vector<float> rays(kSets * 2 * pixels, kNoRay);
     Random random(seed, grid);
     for (size_t set = 0; set < kSets; ++set)
         for (size_t j = 0; j < grid; ++j)
             for (size_t i = 0; i < grid; ++i) {
                 const double x = 2 * (static_cast<double>(i) + random.uniform()) / grid - 1;
                 const double y = 2 * (static_cast<double>(j) + random.uniform()) / grid - 1;
-                const double z2 = 1 - x * x - y * y;
-                if (!(z2 > 1e-6)) continue;
-                float* ray = &rays[set * 3 * pixels + j * row + i];
+                if (x * x + y * y >= kRim) continue;
+                float* ray = &rays[set * 2 * pixels + j * row + i];
                 ray[0] = static_cast<float>(x);
                 ray[pixels] = static_cast<float>(y);
-                ray[2 * pixels] = static_cast<float>(std::sqrt(z2));
             }
     LUCARNE_TRY(device.reserve(rays_, rays.size() * sizeof(float), "rays"));
     LUCARNE_TRY(rays_.upload(0, std::as_bytes(std::span(rays))));

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/shared/brdf.h"
+#include "gi/shared/disc.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
@@ -18,8 +19,8 @@ namespace {
 
 using octree::CodeIndex;
 
-constexpr uint32_t kAxisBits = 21, kCodeBits = 3 * kAxisBits;
-constexpr int kNoCell = kCodeBits;  ///< Range::shift of surfels at one place, and of single ones
+constexpr uint32_t kAxisBits = 20, kMortonBits = 3 * kAxisBits, kCodeBits = kMortonBits + 3;
+constexpr size_t kTasks = 256;    // for the nodes of a level
 constexpr size_t kGrain = 1024;  // nodes or surfels that one task processes
 /// Sheets closer together than about this share of their size are one.
 constexpr float kThinnest = 0.002f;
@@ -38,6 +39,13 @@ bool has_disc(const FlatSurfel& s) {
            std::isfinite(s.x) && std::isfinite(s.y) && std::isfinite(s.z);
 }
 
+/// Returns which side of a cube a normal is nearest to: 0 to 5.
+uint64_t side_of(const glm::vec3& n) {
+    const glm::vec3 size = glm::abs(n);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    return static_cast<uint64_t>(2 * axis + (n[axis] < 0));
+}
+
 /// Puts two zero bits between the bits of a number of kAxisBits.
 uint64_t spread_bits(uint64_t v) {
     v = (v | v << 32) & 0x1f00000000ffffull;
@@ -45,16 +53,6 @@ uint64_t spread_bits(uint64_t v) {
     v = (v | v << 8) & 0x100f00f00f00f00full;
     v = (v | v << 4) & 0x10c30c30c30c30c3ull;
     return (v | v << 2) & 0x1249249249249249ull;
-}
-
-/// Gathers every third bit: the inverse of spread_bits().
-uint32_t gather_bits(uint64_t v) {
-    v &= 0x1249249249249249ull;
-    v = (v | v >> 2) & 0x10c30c30c30c30c3ull;
-    v = (v | v >> 4) & 0x100f00f00f00f00full;
-    v = (v | v >> 8) & 0x1f0000ff0000ffull;
-    v = (v | v >> 16) & 0x1f00000000ffffull;
-    return static_cast<uint32_t>(v | v >> 32);
 }
 
 struct Box {
@@ -65,26 +63,11 @@ struct Box {
     }
 };
 
-/// The cube whose cells the codes number.
-struct MortonGrid {
-    glm::dvec3 low{0.0};
-    double step = 1;  ///< side of the smallest cells, m
-
-    /// Returns the cell of a code, larger by a margin: neighbouring nodes do not lie in exactly one plane, and
-    /// shall have no gap between them.
-    Box cell(uint64_t code, int shift) const {
-        constexpr double kMargin = 0.02;
-        if (shift >= kNoCell) return {glm::vec3(-kFarAway), glm::vec3(kFarAway)};
-        const double size = step * static_cast<double>(1u << (shift / 3));
-        const uint64_t first = code >> shift << shift;
-        const glm::dvec3 corner =
-            low + step * glm::dvec3(gather_bits(first), gather_bits(first >> 1), gather_bits(first >> 2));
-        return {glm::vec3(corner - kMargin * size), glm::vec3(corner + (1 + kMargin) * size)};
-    }
-};
-
-/// Returns the surfels with discs in Morton order within their common cube.
-std::vector<CodeIndex> morton_order(std::span<const FlatSurfel> surfels, MortonGrid& grid) {
+/// Returns the surfels with discs in the order of their codes: the side of a cube to which the normal is nearest,
+/// then the Morton code of the position within the common cube. Thus surfaces of several directions share no node
+/// but the root. A node of the edge of a box would have no plane, and the light of both sides would be seen from
+/// either.
+std::vector<CodeIndex> morton_order(std::span<const FlatSurfel> surfels) {
     std::vector<CodeIndex> order;
     glm::vec3 low(kFarAway), high(-kFarAway);
     for (size_t i = 0; i < surfels.size(); ++i) {
@@ -96,12 +79,12 @@ std::vector<CodeIndex> morton_order(std::span<const FlatSurfel> surfels, MortonG
     }
     const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
     const double cube = std::max({size.x, size.y, size.z, 1e-6});
-    grid = {glm::dvec3(low), cube / ((1u << kAxisBits) - 1)};
+    const double scale = ((1u << kAxisBits) - 1) / cube;
     parallel_ranges(order.size(), kGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const FlatSurfel& s = surfels[order[i].index];
-            const glm::dvec3 at = (glm::dvec3(s.x, s.y, s.z) - grid.low) / grid.step;
-            order[i].code = spread_bits(static_cast<uint64_t>(at.x)) |
+            const glm::dvec3 at = (glm::dvec3(s.x, s.y, s.z) - glm::dvec3(low)) * scale;
+            order[i].code = side_of(decode_octahedral(s.normal)) << kMortonBits | spread_bits(static_cast<uint64_t>(at.x)) |
                             spread_bits(static_cast<uint64_t>(at.y)) << 1 |
                             spread_bits(static_cast<uint64_t>(at.z)) << 2;
         }
@@ -110,10 +93,8 @@ std::vector<CodeIndex> morton_order(std::span<const FlatSurfel> surfels, MortonG
     return order;
 }
 
-/// Surfels in Morton order, of one cell of the tree: their codes are equal but for the lowest `shift` bits.
 struct Range {
     size_t first = 0, last = 0;
-    int shift = kNoCell;
     size_t count() const { return last - first; }
 };
 
@@ -146,7 +127,7 @@ Parts parts_of(std::span<const CodeIndex> order, const Range& range, size_t most
             return item.code >> shift == cell;
         });
         const size_t last = first + static_cast<size_t>(end - rest.begin());
-        parts.add({first, last, shift});
+        parts.add({first, last});
         first = last;
     }
     return parts;
@@ -196,7 +177,6 @@ struct Moments {
         xz += area * n.x * n.z;
         yz += area * n.y * n.z;
     }
-    void add(const Moments& o) { xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz; }
     glm::vec3 times(const glm::vec3& v) const {
         return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
                 xz * v.x + yz * v.y + zz * v.z};
@@ -221,6 +201,17 @@ struct Moments {
     }
 };
 
+/// A decoded surfel.
+struct Disc {
+    glm::vec3 middle, normal;
+    float radius, area;
+};
+
+Disc disc_of(const FlatSurfel& s) {
+    const float area = s.area > 0 && std::isfinite(s.area) ? s.area : kPi * s.radius * s.radius;
+    return {{s.x, s.y, s.z}, decode_octahedral(s.normal), s.radius, area};
+}
+
 /// What a child is to its parent.
 struct Summary {
     glm::vec3 middle{0.0f}, axis{0.0f, 0.0f, 1.0f};
@@ -228,50 +219,41 @@ struct Summary {
     Box box;  ///< the bounds of its discs, m
 };
 
-Summary summary_of(const FlatSurfel& s) {
-    const float area = s.area > 0 && std::isfinite(s.area) ? s.area : kPi * s.radius * s.radius;
-    const glm::vec3 middle(s.x, s.y, s.z), axis = decode_octahedral(s.normal);
-    const glm::vec3 reach = s.radius * glm::sqrt(glm::max(glm::vec3(0.0f), 1.0f - axis * axis));
-    return {middle, axis, s.radius, 0, area, {middle - reach, middle + reach}};
-}
-
-/// Returns the summary of a node whose children are complete. `areas` and `boxes` are those of its children.
-Summary summary_of(const WideNode& node, const float* areas, const Box* boxes, const Moments& moments) {
+Summary summary_of(std::span<const Disc> discs) {
     Summary sum;
-    glm::vec3 middle(0.0f);
-    for (size_t k = 0; k < 8; ++k) {
-        if (node.child[k] == kNoChild) continue;
-        middle += areas[k] * middle_of(node, k);
-        sum.area += areas[k];
-        sum.box.add(boxes[k]);
+    Moments moments;
+    glm::dvec3 middle(0.0);
+    double area = 0;
+    for (const Disc& disc : discs) {
+        middle += glm::dvec3(disc.area * disc.middle);
+        area += disc.area;
+        moments.add(disc.normal, disc.area);
+        const glm::vec3 reach =
+            disc.radius * glm::sqrt(glm::max(glm::vec3(0.0f), 1.0f - disc.normal * disc.normal));
+        sum.box.add({disc.middle - reach, disc.middle + reach});
     }
-    sum.middle = middle / sum.area;
+    sum.area = static_cast<float>(area);
+    sum.middle = glm::vec3(middle / area);
     sum.axis = moments.axis();
-    for (size_t k = 0; k < 8; ++k) {
-        if (node.child[k] == kNoChild) continue;
-        const glm::vec3 offset = middle_of(node, k) - sum.middle;
-        const float cosine = glm::dot(axis_of(node, k), sum.axis);
-        sum.bound = std::max(sum.bound, glm::length(offset) + node.bound[k]);
-        const float tilt = node.bound[k] * std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+    for (const Disc& disc : discs) {
+        const glm::vec3 offset = disc.middle - sum.middle;
+        sum.bound = std::max(sum.bound, glm::length(offset) + disc.radius);
         sum.thickness = std::max(sum.thickness, std::abs(glm::dot(offset, sum.axis)) +
-                                                    std::min(node.bound[k], tilt + node.thickness[k]));
+                                                    disc_reach(disc.radius, glm::dot(disc.normal, sum.axis)));
     }
-    sum.thickness = std::min(sum.thickness, sum.bound);
     return sum;
 }
 
-/// Sets a child; `cell`: where its surfels lie, for nodes.
-void set_child(WideNode& node, size_t k, const Summary& s, const Box* cell) {
+void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.x[k] = s.middle.x, node.y[k] = s.middle.y, node.z[k] = s.middle.z;
     node.nx[k] = s.axis.x, node.ny[k] = s.axis.y, node.nz[k] = s.axis.z;
     node.bound[k] = s.bound, node.thickness[k] = s.thickness, node.disc[k] = s.bound;
     glm::vec3 low(-kFarAway), high(kFarAway);
-    if (cell) {
-        if (s.thickness <= kThickNode * s.bound) {
-            const float margin = s.thickness + kThinnest * s.bound;
-            low = glm::max(s.box.low, cell->low) - s.middle - margin;
-            high = glm::min(s.box.high, cell->high) - s.middle + margin;
-        }
+    if (!leaf && s.thickness <= kThickNode * s.bound) {
+        // All discs shall be within the box if they are moved into the plane.
+        const glm::vec3 margin = (s.thickness + kThinnest * s.bound) * glm::abs(s.axis);
+        low = s.box.low - s.middle - margin;
+        high = s.box.high - s.middle + margin;
     }
     node.low_x[k] = low.x, node.low_y[k] = low.y, node.low_z[k] = low.z;
     node.high_x[k] = high.x, node.high_y[k] = high.y, node.high_z[k] = high.z;
@@ -280,44 +262,47 @@ void set_child(WideNode& node, size_t k, const Summary& s, const Box* cell) {
 WideNode empty_node() {
     WideNode node{};
     for (size_t k = 0; k < 8; ++k) {
-        set_child(node, k, {.middle = glm::vec3(kFarAway)}, nullptr);
+        set_child(node, k, {.middle = glm::vec3(kFarAway)}, true);
         node.child[k] = kNoChild;
     }
     return node;
 }
 
-/// Sets the topology: nodes level by level, with the surfels of their leaves. Returns the cell of every slot.
-std::vector<Box> divide_all(SurfelTree& tree, std::span<const CodeIndex> order, const MortonGrid& grid) {
-    std::vector<Box> cells;
+/// Sets the nodes, level by level.
+void divide_all(SurfelTree& tree, std::span<const CodeIndex> order, std::span<const Disc> discs) {
     std::vector<Range> level{{0, order.size()}};
     while (!level.empty()) {
         const size_t begin = tree.nodes.size();
         tree.levels.push_back(begin);
         tree.nodes.resize(begin + level.size(), empty_node());
         tree.surfels.resize(8 * tree.nodes.size(), kNoSurfel);
+        tree.areas.resize(8 * tree.nodes.size());
         std::vector<Parts> children(level.size());
-        parallel_ranges(level.size(), kGrain, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i) children[i] = divide(order, level[i]);
+        parallel_ranges(level.size(), std::max<size_t>(1, level.size() / kTasks), [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                children[i] = divide(order, level[i]);
+                for (size_t k = 0; k < children[i].count; ++k) {
+                    const Range& range = children[i].ranges[k];
+                    const bool leaf = range.count() == 1;
+                    const Summary child = summary_of(discs.subspan(range.first, range.count()));
+                    WideNode& node = tree.nodes[begin + i];
+                    set_child(node, k, child, leaf);
+                    node.child[k] = kLeafChild;  // nodes get their numbers below
+                    tree.areas[8 * (begin + i) + k] = child.area;
+                    if (leaf) tree.surfels[8 * (begin + i) + k] = order[range.first].index;
+                }
+            }
         });
         std::vector<Range> next;
         for (size_t i = 0; i < level.size(); ++i)
             for (size_t k = 0; k < children[i].count; ++k) {
-                const Range& range = children[i].ranges[k];
-                const bool leaf = range.count() == 1;
-                tree.nodes[begin + i].child[k] =
-                    leaf ? kLeafChild : static_cast<int>(begin + level.size() + next.size());
-                cells.resize(8 * (begin + i) + k + 1);
-                cells.back() = grid.cell(order[range.first].code, range.shift);
-                if (leaf)
-                    tree.surfels[8 * (begin + i) + k] = order[range.first].index;
-                else
-                    next.push_back(range);
+                if (children[i].ranges[k].count() == 1) continue;
+                tree.nodes[begin + i].child[k] = static_cast<int>(begin + level.size() + next.size());
+                next.push_back(children[i].ranges[k]);
             }
         level = std::move(next);
     }
     tree.levels.push_back(tree.nodes.size());
-    cells.resize(8 * tree.nodes.size());
-    return cells;
 }
 
 /// Calls body(node) for all nodes, the deepest level first.
@@ -351,32 +336,14 @@ Facing facing(const WideNode& node, size_t k, float area, const Summary& parent)
 
 SurfelTree build_tree(std::span<const FlatSurfel> surfels) {
     SurfelTree tree;
-    MortonGrid grid;
-    const std::vector<CodeIndex> order = morton_order(surfels, grid);
+    const std::vector<CodeIndex> order = morton_order(surfels);
     tree.leaves = order.size();
     if (order.empty()) return tree;
-    const std::vector<Box> cells = divide_all(tree, order, grid);
-    tree.areas.resize(8 * tree.nodes.size());
-    std::vector<Moments> moments(tree.nodes.size());
-    std::vector<Box> boxes(tree.areas.size());
-    for_each_upward(tree, [&](size_t at) {
-        WideNode& node = tree.nodes[at];
-        for (size_t k = 0; k < 8; ++k) {
-            if (node.child[k] == kNoChild) continue;
-            Summary child;
-            if (node.child[k] == kLeafChild) {
-                child = summary_of(surfels[tree.surfels[8 * at + k]]);
-                moments[at].add(child.axis, child.area);
-            } else {
-                const auto below = static_cast<size_t>(node.child[k]);
-                child = summary_of(tree.nodes[below], &tree.areas[8 * below], &boxes[8 * below], moments[below]);
-                moments[at].add(moments[below]);
-            }
-            set_child(node, k, child, node.child[k] == kLeafChild ? nullptr : &cells[8 * at + k]);
-            tree.areas[8 * at + k] = child.area;
-            boxes[8 * at + k] = child.box;
-        }
+    std::vector<Disc> discs(order.size());
+    parallel_ranges(order.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) discs[i] = disc_of(surfels[order[i].index]);
     });
+    divide_all(tree, order, discs);
     return tree;
 }
 

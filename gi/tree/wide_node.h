@@ -17,9 +17,8 @@ LUCARNE_CONST float kThickNode = 0.25f;
 // "slot" is 8 * node + place of the child.
 //
 // Where a child is small it is drawn as a piece of the plane through its middle: what lies in the disc and in
-// the box about it. A surfel is its disc. A flat node is cut by its box: the bounds of its discs within its
-// own cell of the tree, so that cells of one wall meet without gaps and its ends are not beyond those of its
-// discs. A node of several directions has no plane: its disc faces whoever looks.
+// the box about it. A surfel is its disc. A flat node is cut by its box, the bounds of its
+// discs, so that nodes of one wall overlap and its ends are not beyond those of its discs. A node of several directions has no plane: its disc faces whoever looks.
 LUCARNE_STRUCT(WideNode) {
     float x[8], y[8], z[8];        // middle of the child, m
     float bound[8];                // radius of the sphere about the middle that holds all discs of the child, m

@@ -4,15 +4,13 @@
 #include <optional>
 
 #include "gi/bounce_options.h"
+#include "gi/engines/micro/final_gather.h"
 #include "gi/engines/micro/options.h"
 #include "gi/engines/micro/radiosity.h"
-#include "gi/engines/micro/upsample.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
-#include "gi/shared/brdf.h"
-#include "io/core/parallel.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
@@ -50,7 +48,6 @@ class MicroEngine final : public Engine {
         bool operator==(const Basis&) const = default;
     };
     Result<void> make_light(Frame& frame);
-    Result<void> gather(Frame& frame);
     Result<void> add_direct(Frame& frame);
 
     ClDevice* opencl_ = nullptr;  ///< of the frame's device
@@ -65,7 +62,7 @@ class MicroEngine final : public Engine {
     LightCutRevisions cuts_;
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
-    size_t gather_points_ = 0, gathered_again_ = 0;
+    GatherCounts counts_;
 };
 
 void MicroEngine::update(const Changes& changes) {
@@ -124,71 +121,6 @@ Result<void> MicroEngine::make_light(Frame& frame) {
     return {};
 }
 
-/// Sets frame.gl.radiance to the reflected light of all surfels.
-Result<void> MicroEngine::gather(Frame& frame) {
-    const EngineSettings& s = frame.settings;
-    const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
-    const uint32_t step = s[kGatherEvery];
-    const uint64_t seed = mix64(s[kSeed], frame.index);
-    // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
-    const uint32_t place =
-        frame.index == 0 ? (step / 2) * (step + 1) : static_cast<uint32_t>(mix64(seed) % (step * step));
-    const GatherGrid grid{frame.camera.width, frame.camera.height, step, place % step, place / step};
-    const auto point_of = [&](uint32_t pixel) {
-        const SurfacePoint& at = surfaces[pixel];
-        return GatherPoint{at.position, at.radius, at.normal, static_cast<uint32_t>(mix64(seed, pixel)),
-                           at.viewer,   0};
-    };
-    std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
-    // Gathers at those of these pixels that show a surface; results by their order.
-    const auto gather_at = [&](const std::vector<uint32_t>& pixels, std::vector<glm::vec4>& results) {
-        std::vector<GatherPoint> points;
-        std::vector<size_t> places;
-        for (size_t i = 0; i < pixels.size(); ++i) {
-            if (!(surfaces[pixels[i]].radius > 0)) continue;
-            points.push_back(point_of(pixels[i]));
-            places.push_back(i);
-        }
-        std::vector<glm::vec4> found(points.size());
-        results.assign(pixels.size(), glm::vec4(0.0f));
-        const auto done =
-            gatherer_.gather(*opencl_, points, s[kMicroBuffer], seed, found, frame.stop, frame.progress);
-        for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
-        gather_points_ += points.size();
-        return done;
-    };
-    std::vector<uint32_t> pixels;
-    for (uint32_t row = 0; row < grid.rows(); ++row)
-        for (uint32_t column = 0; column < grid.columns(); ++column)
-            pixels.push_back(grid.pixel(column, row));
-    gather_points_ = gathered_again_ = 0;
-    std::vector<glm::vec4> gathered;
-    {
-        const TimedPass pass(frame, "gather");
-        LUCARNE_TRY(gather_at(pixels, gathered));
-    }
-    if (frame.stopped()) return {};
-    if (step == 1) {
-        light = std::move(gathered);
-    } else {
-        const TimedPass pass(frame, "upsample");
-        const auto missing = upsample(frame.camera, surfaces, grid, gathered, light);
-        gathered_again_ = missing.size();
-        LUCARNE_TRY(gather_at(missing, gathered));
-        for (size_t i = 0; i < missing.size(); ++i) light[missing[i]] = gathered[i];
-    }
-    const std::vector<Material> materials = device_materials(frame.materials);
-    parallel_ranges(light.size(), 4096, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
-            const SurfacePoint& at = surfaces[i];
-            const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
-            light[i] = glm::vec4(r.kd * glm::vec3(light[i]), 0);
-        }
-    });
-    upload_radiance(frame, light);
-    return {};
-}
-
 /// Adds emission, background and the first reflection of the lights.
 Result<void> MicroEngine::add_direct(Frame& frame) {
     const TimedPass pass(frame, "direct light");
@@ -207,7 +139,9 @@ Result<void> MicroEngine::render(Frame& frame) {
     if (wants_indirect(frame.settings)) {
         LUCARNE_TRY(make_light(frame));
         if (frame.stopped()) return {};
-        LUCARNE_TRY(gather(frame));
+        LUCARNE_ASSIGN(const std::vector<glm::vec4> light, gather_pixels(frame, *opencl_, gatherer_, counts_));
+        if (frame.stopped()) return {};
+        upload_radiance(frame, light);
     }
     if (frame.stopped() || !wants_direct(frame.settings)) return {};
     return add_direct(frame);
@@ -217,8 +151,8 @@ std::vector<std::pair<std::string, double>> MicroEngine::stats() const {
     return {{"tree_nodes", lit_.tree().nodes.size()},
             {"surfels", lit_.tree().leaves},
             {"radiosity_places", radiosity_.places()},
-            {"gather_points", gather_points_},
-            {"gathered_again", gathered_again_}};
+            {"gather_points", counts_.points},
+            {"gathered_again", counts_.again}};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace lucarne::gi::micro {
 namespace {
 
-constexpr size_t kGrain = 16384;
+constexpr size_t kSurfelsATask = 16384;
 /// Nodes that are thicker than this share of their size hold surfaces of several directions; they are
 /// divided until they are a quarter of the size of flat ones.
 constexpr float kFlat = 0.25f;
@@ -102,8 +102,14 @@ void Radiosity::choose_places(const LitTree& scene, uint32_t level) {
         const FlatSurfel& surfel = scene.surfels()[drawn];
         const glm::vec3 normal = normal_of(surfel);
         for (const float side : {1.0f, -1.0f})
-            points_[2 * place + (side < 0)] = {
-                {surfel.x, surfel.y, surfel.z}, surfel.radius, side * normal, 0, glm::vec3(0.0f), 0};
+            points_[2 * place + (side < 0)] = {.position = {surfel.x, surfel.y, surfel.z},
+                                               .lift = surfel.radius,
+                                               .normal = side * normal,
+                                               .seed = 0,
+                                               .viewer = glm::vec3(0.0f),
+                                               .exponent = 0,
+                                               .axis = side * normal,
+                                               .scale = 1};
         for_each_surfel(tree, slots[place], [&](uint32_t s) { place_of_[s] = place; });
     }
 }
@@ -124,7 +130,7 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
             points[i].seed = static_cast<uint32_t>(mix64(settings.seed + bounce, i));
         LUCARNE_TRY(gatherer.gather(device, points, settings.side, settings.seed, gathered, stop));
         if (stop && *stop) return {};
-        parallel_ranges(last.size(), kGrain, [&](size_t first, size_t end) {
+        parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {
             for (size_t i = first; i < end; ++i) {
                 last[i] = {};
                 const uint32_t place = place_of_[i];

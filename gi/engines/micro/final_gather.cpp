@@ -1,0 +1,144 @@
+#include "gi/engines/micro/final_gather.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "gi/bounce_options.h"
+#include "gi/engines/micro/options.h"
+#include "gi/engines/micro/upsample.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/shared/brdf.h"
+#include "io/core/parallel.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi::micro {
+namespace {
+
+constexpr size_t kPixelsATask = 4096;
+/// Micro-buffers of specular lobes end where the lobe has fallen to this share of its peak; the rest is a
+/// thousandth of its light.
+constexpr float kLobeEnd = 1e-3f;
+
+enum class Lobe : uint8_t { diffuse, specular };
+
+/// One picture of gathered light: of one lobe of the pixels that have it.
+class LobeGather {
+ public:
+    LobeGather(Frame& frame, ClDevice& device, Gatherer& gatherer, GatherCounts& counts)
+        : frame_(frame), device_(device), gatherer_(gatherer), counts_(counts),
+          seed_(mix64(frame.settings[kSeed], frame.index)) {}
+
+    /// Sets the mean that the lobe of each surface gathers (GatherPoint). A surface without a radius gathers
+    /// nothing.
+    Result<void> run(Lobe lobe, std::span<const SurfacePoint> surfaces, std::span<const Reflectance> reflectances,
+                     std::vector<glm::vec4>& light) {
+        lobe_ = lobe;
+        surfaces_ = surfaces;
+        reflectances_ = reflectances;
+        const uint32_t step = frame_.settings[kGatherEvery];
+        // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
+        const uint32_t place = frame_.index == 0 ? (step / 2) * (step + 1)
+                                                 : static_cast<uint32_t>(mix64(seed_) % (step * step));
+        const GatherGrid grid{frame_.camera.width, frame_.camera.height, step, place % step, place / step};
+        std::vector<uint32_t> pixels;
+        for (uint32_t row = 0; row < grid.rows(); ++row)
+            for (uint32_t column = 0; column < grid.columns(); ++column)
+                pixels.push_back(grid.pixel(column, row));
+        std::vector<glm::vec4> gathered;
+        LUCARNE_TRY(timed(frame_, "gather", [&] { return gather_at(pixels, gathered); }));
+        if (step == 1) {
+            light = std::move(gathered);
+            return {};
+        }
+        if (frame_.stopped()) return {};
+        light.resize(surfaces.size());
+        const TimedPass pass(frame_, "upsample");
+        const auto missing = upsample(frame_.camera, surfaces, grid, gathered, light);
+        counts_.again += missing.size();
+        LUCARNE_TRY(gather_at(missing, gathered));
+        for (size_t i = 0; i < missing.size(); ++i) light[missing[i]] = gathered[i];
+        return {};
+    }
+
+ private:
+    GatherPoint point_of(uint32_t pixel) const {
+        const SurfacePoint& at = surfaces_[pixel];
+        GatherPoint point{.position = at.position,
+                          .lift = at.radius,
+                          .normal = at.normal,
+                          .seed = static_cast<uint32_t>(mix64(seed_, pixel)),
+                          .viewer = at.viewer,
+                          .exponent = 0,
+                          .axis = at.normal,
+                          .scale = 1};
+        if (lobe_ == Lobe::specular) {
+            point.exponent = reflectances_[pixel].exponent;
+            point.axis = glm::normalize(2 * glm::dot(at.normal, at.viewer) * at.normal - at.viewer);
+            const float cosine = std::pow(kLobeEnd, 1 / point.exponent);
+            point.scale = std::sqrt(1 - cosine * cosine);
+        }
+        return point;
+    }
+    /// Gathers at those of these pixels that have a surface; results in their order.
+    Result<void> gather_at(std::span<const uint32_t> pixels, std::vector<glm::vec4>& results) {
+        std::vector<GatherPoint> points;
+        std::vector<size_t> places;
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            if (!(surfaces_[pixels[i]].radius > 0)) continue;
+            points.push_back(point_of(pixels[i]));
+            places.push_back(i);
+        }
+        std::vector<glm::vec4> found(points.size());
+        LUCARNE_TRY(gatherer_.gather(device_, points, frame_.settings[kMicroBuffer], seed_, found, frame_.stop,
+                                     frame_.progress));
+        results.assign(pixels.size(), glm::vec4(0.0f));
+        for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
+        counts_.points += points.size();
+        return {};
+    }
+
+    Frame& frame_;
+    ClDevice& device_;
+    Gatherer& gatherer_;
+    GatherCounts& counts_;
+    uint64_t seed_;
+    Lobe lobe_ = Lobe::diffuse;
+    std::span<const SurfacePoint> surfaces_;
+    std::span<const Reflectance> reflectances_;
+};
+
+}  // namespace
+
+Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
+                                             GatherCounts& counts) {
+    auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    const std::vector<Material> materials = device_materials(frame.materials);
+    std::vector<Reflectance> reflectances(surfaces.size());
+    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            reflectances[i] =
+                make_reflectance(materials[surfaces[i].material % materials.size()], surfaces[i].albedo);
+    });
+    counts = {};
+    LobeGather gather(frame, device, gatherer, counts);
+    std::vector<glm::vec4> light, lobe;
+    LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, reflectances, light));
+    if (frame.stopped()) return light;
+    for (size_t i = 0; i < light.size(); ++i) light[i] = glm::vec4(reflectances[i].kd * glm::vec3(light[i]), 0);
+    if (!glossy(frame)) return light;
+    for (size_t i = 0; i < surfaces.size(); ++i)
+        if (!(reflectances[i].ks > 0)) surfaces[i].radius = 0;
+    LUCARNE_TRY(gather.run(Lobe::specular, surfaces, reflectances, lobe));
+    if (frame.stopped()) return light;
+    for (size_t i = 0; i < light.size(); ++i) {
+        const Reflectance& r = reflectances[i];
+        if (!(surfaces[i].radius > 0)) continue;
+        const float scale2 = 1 - std::pow(kLobeEnd, 2 / r.exponent);
+        light[i] += r.ks * (r.exponent + 2) / 2 * scale2 * glm::vec4(glm::vec3(lobe[i]), 0);
+    }
+    return light;
+}
+
+}  // namespace lucarne::gi::micro
