@@ -11,10 +11,6 @@
 #define GRID LUCARNE_GRID
 #define ROW LUCARNE_ROW
 #define PIXELS (GRID * ROW)
-// Nodes are drawn as one disc if their radius over their distance is at most this: four pixels across. Rows of eight
-// pixels cost as much as one, so smaller nodes would only add work.
-#define LARGEST_NODE (4.0f / GRID)
-#define LARGEST_THICK (.7f / GRID)
 #define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
@@ -129,8 +125,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
         above &= dx * axis.x + dy * axis.y + dz * axis.z > -bound;
-        int8 thick = (thickness > bound * kThickNode) & (child >= 0);
-        float8 limit = select((float8)(LARGEST_NODE), (float8)(LARGEST_THICK), thick) * scale;
+        float8 limit = vload8(0, node->pixels) * (scale / GRID);
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         if (any(go)) {
@@ -143,12 +138,13 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
             }
         }
         if (!any(drawn)) continue;
-        float8 disc = vload8(0, node->disc), nearer = rsqrt(distance2);
+        float8 nearer = rsqrt(distance2);
+        int8 thick = (thickness > bound * kThickNode) & (child >= 0);
         nx = select(nx, dx * nearer, thick);
         ny = select(ny, dy * nearer, thick);
         nz = select(nz, dz * nearer, thick);
         // Directions to a disc differ from that to its middle by at most 2 sin(asin(s) / 2) < s (1 + .42 s^2).
-        float8 s = disc * nearer;
+        float8 s = bound * nearer;
         float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * pixels + 0.5f;
         float8 px = (dx * side.x + dy * side.y + dz * side.z) * nearer * pixels + (0.5f * GRID - 0.5f);
         float8 py = (dx * across.x + dy * across.y + dz * across.z) * nearer * pixels + (0.5f * GRID - 0.5f);
@@ -170,7 +166,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
             if (!draws[k]) continue;
             uint slot = (uint)(at * 8 + k);
             int first = (int)left[k], last = (int)right[k], end = (int)lower[k];
-            float radius2 = node->disc[k] * node->disc[k];
+            float radius2 = node->bound[k] * node->bound[k];
             float low_x = node->low_x[k], low_y = node->low_y[k], low_z = node->low_z[k];
             float high_x = node->high_x[k], high_y = node->high_y[k], high_z = node->high_z[k];
             for (int j = (int)upper[k]; j <= end; ++j)

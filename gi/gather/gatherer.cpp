@@ -84,8 +84,8 @@ Result<void> Gatherer::gather(ClDevice& device, std::span<const GatherPoint> poi
         if (stop && *stop) return {};
         const size_t count = std::min(kPointsAtOnce, points.size() - first);
         LUCARNE_TRY(points_.upload(0, std::as_bytes(points.subspan(first, count))));
-        LUCARNE_TRY(kernel->run(ClRange(count, 1), nodes_, light_, points_, rays_, kSets, static_cast<uint32_t>(count),
-                                results_));
+        LUCARNE_TRY(kernel->run(ClRange(count, 1), nodes_, light_, points_, rays_, kSets,
+                                static_cast<uint32_t>(count), results_));
         LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
         if (progress) progress->add(count);
     }

@@ -20,10 +20,15 @@ namespace {
 using octree::CodeIndex;
 
 constexpr uint32_t kAxisBits = 20, kMortonBits = 3 * kAxisBits, kCodeBits = kMortonBits + 3;
-constexpr size_t kTasks = 256;    // for the nodes of a level
+constexpr size_t kTasks = 256;   // for the nodes of a level
 constexpr size_t kGrain = 1024;  // nodes or surfels that one task processes
 /// Sheets closer together than about this share of their size are one.
 constexpr float kThinnest = 0.002f;
+/// From how many pixels across nodes are opened (WideNode::pixels). Rows of eight pixels cost as much as one,
+/// so smaller flat nodes would only add work.
+constexpr float kFlatPixels = 4.0f, kRaggedPixels = 1.5f, kThickPixels = 0.7f;
+/// A flat node has holes, or an end of its surface, if its surfels cover less than this share of it.
+constexpr float kFilled = 0.75f;
 /// Radii of nodes that stand for nothing, so that no arithmetic on empty slots meets a NaN.
 constexpr float kFarAway = 1e18f;
 
@@ -63,10 +68,10 @@ struct Box {
     }
 };
 
-/// Returns the surfels with discs in the order of their codes: the side of a cube to which the normal is nearest,
-/// then the Morton code of the position within the common cube. Thus surfaces of several directions share no node
-/// but the root. A node of the edge of a box would have no plane, and the light of both sides would be seen from
-/// either.
+/// Returns the surfels with discs in the order of their codes: the side of a cube to which the normal is
+/// nearest, then the Morton code of the position within the common cube. Thus surfaces of several directions
+/// share no node but the root. A node of the edge of a box would have no plane, and the light of both sides
+/// would be seen from either.
 std::vector<CodeIndex> morton_order(std::span<const FlatSurfel> surfels) {
     std::vector<CodeIndex> order;
     glm::vec3 low(kFarAway), high(-kFarAway);
@@ -84,7 +89,8 @@ std::vector<CodeIndex> morton_order(std::span<const FlatSurfel> surfels) {
         for (size_t i = first; i < last; ++i) {
             const FlatSurfel& s = surfels[order[i].index];
             const glm::dvec3 at = (glm::dvec3(s.x, s.y, s.z) - glm::dvec3(low)) * scale;
-            order[i].code = side_of(decode_octahedral(s.normal)) << kMortonBits | spread_bits(static_cast<uint64_t>(at.x)) |
+            order[i].code = side_of(decode_octahedral(s.normal)) << kMortonBits |
+                            spread_bits(static_cast<uint64_t>(at.x)) |
                             spread_bits(static_cast<uint64_t>(at.y)) << 1 |
                             spread_bits(static_cast<uint64_t>(at.z)) << 2;
         }
@@ -123,9 +129,8 @@ Parts parts_of(std::span<const CodeIndex> order, const Range& range, size_t most
     for (size_t first = range.first; first < range.last;) {
         const uint64_t cell = order[first].code >> shift;
         const auto rest = order.subspan(first, range.last - first);
-        const auto end = std::partition_point(rest.begin(), rest.end(), [&](const CodeIndex& item) {
-            return item.code >> shift == cell;
-        });
+        const auto end = std::partition_point(
+            rest.begin(), rest.end(), [&](const CodeIndex& item) { return item.code >> shift == cell; });
         const size_t last = first + static_cast<size_t>(end - rest.begin());
         parts.add({first, last});
         first = last;
@@ -216,14 +221,35 @@ Disc disc_of(const FlatSurfel& s) {
 struct Summary {
     glm::vec3 middle{0.0f}, axis{0.0f, 0.0f, 1.0f};
     float bound = 0, thickness = 0, area = 0;
-    Box box;  ///< the bounds of its discs, m
+    Box box;         ///< the bounds of its discs, m
+    float fill = 1;  ///< the share of the box's section with its plane that its surfels cover
 };
+
+/// Returns the area of the section of a box with the plane through a point, m^2: the share of a grid of
+/// points that are in it.
+float section_of(const Box& box, const glm::vec3& point, const glm::vec3& normal) {
+    constexpr int kPoints = 5;  // along each axis
+    const glm::vec3 size = glm::abs(normal), extent = box.high - box.low;
+    const int w = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int u = (w + 1) % 3, v = (w + 2) % 3;
+    int inside = 0;
+    for (int j = 0; j < kPoints; ++j)
+        for (int i = 0; i < kPoints; ++i) {
+            const float at_u = box.low[u] + extent[u] * (static_cast<float>(i) + 0.5f) / kPoints;
+            const float at_v = box.low[v] + extent[v] * (static_cast<float>(j) + 0.5f) / kPoints;
+            const float at_w =
+                point[w] - ((at_u - point[u]) * normal[u] + (at_v - point[v]) * normal[v]) / normal[w];
+            inside += at_w >= box.low[w] && at_w <= box.high[w];
+        }
+    return extent[u] * extent[v] / size[w] * static_cast<float>(inside) / (kPoints * kPoints);
+}
 
 Summary summary_of(std::span<const Disc> discs) {
     Summary sum;
     Moments moments;
     glm::dvec3 middle(0.0);
     double area = 0;
+    Box squares;  // bounds of the areas, without the rims of the discs
     for (const Disc& disc : discs) {
         middle += glm::dvec3(disc.area * disc.middle);
         area += disc.area;
@@ -231,6 +257,8 @@ Summary summary_of(std::span<const Disc> discs) {
         const glm::vec3 reach =
             disc.radius * glm::sqrt(glm::max(glm::vec3(0.0f), 1.0f - disc.normal * disc.normal));
         sum.box.add({disc.middle - reach, disc.middle + reach});
+        const glm::vec3 half = reach * std::min(1.0f, 0.5f * std::sqrt(disc.area) / disc.radius);
+        squares.add({disc.middle - half, disc.middle + half});
     }
     sum.area = static_cast<float>(area);
     sum.middle = glm::vec3(middle / area);
@@ -241,15 +269,20 @@ Summary summary_of(std::span<const Disc> discs) {
         sum.thickness = std::max(sum.thickness, std::abs(glm::dot(offset, sum.axis)) +
                                                     disc_reach(disc.radius, glm::dot(disc.normal, sum.axis)));
     }
+    const glm::vec3 room = sum.thickness * glm::abs(sum.axis);
+    const float section = section_of({squares.low - room, squares.high + room}, sum.middle, sum.axis);
+    sum.fill = section > 0 ? sum.area / section : 1;
     return sum;
 }
 
 void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.x[k] = s.middle.x, node.y[k] = s.middle.y, node.z[k] = s.middle.z;
     node.nx[k] = s.axis.x, node.ny[k] = s.axis.y, node.nz[k] = s.axis.z;
-    node.bound[k] = s.bound, node.thickness[k] = s.thickness, node.disc[k] = s.bound;
+    node.bound[k] = s.bound, node.thickness[k] = s.thickness;
+    const bool thick = s.thickness > kThickNode * s.bound;
+    node.pixels[k] = leaf ? kFarAway : thick ? kThickPixels : s.fill < kFilled ? kRaggedPixels : kFlatPixels;
     glm::vec3 low(-kFarAway), high(kFarAway);
-    if (!leaf && s.thickness <= kThickNode * s.bound) {
+    if (!leaf && !thick) {
         // All discs shall be within the box if they are moved into the plane.
         const glm::vec3 margin = (s.thickness + kThinnest * s.bound) * glm::abs(s.axis);
         low = s.box.low - s.middle - margin;
@@ -278,21 +311,22 @@ void divide_all(SurfelTree& tree, std::span<const CodeIndex> order, std::span<co
         tree.surfels.resize(8 * tree.nodes.size(), kNoSurfel);
         tree.areas.resize(8 * tree.nodes.size());
         std::vector<Parts> children(level.size());
-        parallel_ranges(level.size(), std::max<size_t>(1, level.size() / kTasks), [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i) {
-                children[i] = divide(order, level[i]);
-                for (size_t k = 0; k < children[i].count; ++k) {
-                    const Range& range = children[i].ranges[k];
-                    const bool leaf = range.count() == 1;
-                    const Summary child = summary_of(discs.subspan(range.first, range.count()));
-                    WideNode& node = tree.nodes[begin + i];
-                    set_child(node, k, child, leaf);
-                    node.child[k] = kLeafChild;  // nodes get their numbers below
-                    tree.areas[8 * (begin + i) + k] = child.area;
-                    if (leaf) tree.surfels[8 * (begin + i) + k] = order[range.first].index;
+        parallel_ranges(
+            level.size(), std::max<size_t>(1, level.size() / kTasks), [&](size_t first, size_t last) {
+                for (size_t i = first; i < last; ++i) {
+                    children[i] = divide(order, level[i]);
+                    for (size_t k = 0; k < children[i].count; ++k) {
+                        const Range& range = children[i].ranges[k];
+                        const bool leaf = range.count() == 1;
+                        const Summary child = summary_of(discs.subspan(range.first, range.count()));
+                        WideNode& node = tree.nodes[begin + i];
+                        set_child(node, k, child, leaf);
+                        node.child[k] = kLeafChild;  // nodes get their numbers below
+                        tree.areas[8 * (begin + i) + k] = child.area;
+                        if (leaf) tree.surfels[8 * (begin + i) + k] = order[range.first].index;
+                    }
                 }
-            }
-        });
+            });
         std::vector<Range> next;
         for (size_t i = 0; i < level.size(); ++i)
             for (size_t k = 0; k < children[i].count; ++k) {
@@ -356,9 +390,10 @@ void pull_light(const SurfelTree& tree, std::span<const SideLight> light, std::v
             if (node.child[k] < 0) continue;
             const auto below = static_cast<size_t>(node.child[k]);
             const WideNode& inner = tree.nodes[below];
-            const Summary parent{
-                .middle = middle_of(node, k), .axis = axis_of(node, k),
-                .bound = node.bound[k], .thickness = node.thickness[k]};
+            const Summary parent{.middle = middle_of(node, k),
+                                 .axis = axis_of(node, k),
+                                 .bound = node.bound[k],
+                                 .thickness = node.thickness[k]};
             SideLight sum;
             float front = 0, back = 0;
             for (size_t c = 0; c < 8; ++c) {

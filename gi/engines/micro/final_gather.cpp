@@ -27,20 +27,23 @@ enum class Lobe : uint8_t { diffuse, specular };
 class LobeGather {
  public:
     LobeGather(Frame& frame, ClDevice& device, Gatherer& gatherer, GatherCounts& counts)
-        : frame_(frame), device_(device), gatherer_(gatherer), counts_(counts),
+        : frame_(frame),
+          device_(device),
+          gatherer_(gatherer),
+          counts_(counts),
           seed_(mix64(frame.settings[kSeed], frame.index)) {}
 
     /// Sets the mean that the lobe of each surface gathers (GatherPoint). A surface without a radius gathers
     /// nothing.
-    Result<void> run(Lobe lobe, std::span<const SurfacePoint> surfaces, std::span<const Reflectance> reflectances,
-                     std::vector<glm::vec4>& light) {
+    Result<void> run(Lobe lobe, std::span<const SurfacePoint> surfaces,
+                     std::span<const Reflectance> reflectances, std::vector<glm::vec4>& light) {
         lobe_ = lobe;
         surfaces_ = surfaces;
         reflectances_ = reflectances;
         const uint32_t step = frame_.settings[kGatherEvery];
         // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
-        const uint32_t place = frame_.index == 0 ? (step / 2) * (step + 1)
-                                                 : static_cast<uint32_t>(mix64(seed_) % (step * step));
+        const uint32_t place =
+            frame_.index == 0 ? (step / 2) * (step + 1) : static_cast<uint32_t>(mix64(seed_) % (step * step));
         const GatherGrid grid{frame_.camera.width, frame_.camera.height, step, place % step, place / step};
         std::vector<uint32_t> pixels;
         for (uint32_t row = 0; row < grid.rows(); ++row)
@@ -91,8 +94,8 @@ class LobeGather {
             places.push_back(i);
         }
         std::vector<glm::vec4> found(points.size());
-        LUCARNE_TRY(gatherer_.gather(device_, points, frame_.settings[kMicroBuffer], seed_, found, frame_.stop,
-                                     frame_.progress));
+        LUCARNE_TRY(gatherer_.gather(device_, points, frame_.settings[kMicroBuffer], seed_, found,
+                                     frame_.stop, frame_.progress));
         results.assign(pixels.size(), glm::vec4(0.0f));
         for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
         counts_.points += points.size();
@@ -126,7 +129,8 @@ Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gat
     std::vector<glm::vec4> light, lobe;
     LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, reflectances, light));
     if (frame.stopped()) return light;
-    for (size_t i = 0; i < light.size(); ++i) light[i] = glm::vec4(reflectances[i].kd * glm::vec3(light[i]), 0);
+    for (size_t i = 0; i < light.size(); ++i)
+        light[i] = glm::vec4(reflectances[i].kd * glm::vec3(light[i]), 0);
     if (!glossy(frame)) return light;
     for (size_t i = 0; i < surfaces.size(); ++i)
         if (!(reflectances[i].ks > 0)) surfaces[i].radius = 0;

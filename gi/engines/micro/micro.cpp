@@ -139,7 +139,8 @@ Result<void> MicroEngine::render(Frame& frame) {
     if (wants_indirect(frame.settings)) {
         LUCARNE_TRY(make_light(frame));
         if (frame.stopped()) return {};
-        LUCARNE_ASSIGN(const std::vector<glm::vec4> light, gather_pixels(frame, *opencl_, gatherer_, counts_));
+        LUCARNE_ASSIGN(const std::vector<glm::vec4> light,
+                       gather_pixels(frame, *opencl_, gatherer_, counts_));
         if (frame.stopped()) return {};
         upload_radiance(frame, light);
     }

@@ -48,7 +48,14 @@ std::vector<GatherPoint> floor_points(float size, float lift, size_t count) {
     Random random(7);
     for (size_t i = 0; i < count; ++i) {
         const auto x = static_cast<float>(random.uniform()), y = static_cast<float>(random.uniform());
-        points.push_back({size * glm::vec3(x, y, 0), lift, {0, 0, 1}, static_cast<uint32_t>(i), glm::vec3(0.0f), 0, {0, 0, 1}, 1});
+        points.push_back({size * glm::vec3(x, y, 0),
+                          lift,
+                          {0, 0, 1},
+                          static_cast<uint32_t>(i),
+                          glm::vec3(0.0f),
+                          0,
+                          {0, 0, 1},
+                          1});
     }
     return points;
 }

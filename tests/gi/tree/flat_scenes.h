@@ -16,8 +16,15 @@
 namespace lucarne::gi::flat {
 
 inline FlatSurfel of(const Surfel& s) {
-    return {s.position.x, s.position.y, s.position.z, s.radius, s.area, encode_octahedral(s.normal),
-            encode_albedo(s.albedo) | kSurfelHasNormal, s.material, kNoEdges};
+    return {s.position.x,
+            s.position.y,
+            s.position.z,
+            s.radius,
+            s.area,
+            encode_octahedral(s.normal),
+            encode_albedo(s.albedo) | kSurfelHasNormal,
+            s.material,
+            kNoEdges};
 }
 inline std::vector<FlatSurfel> of(const std::vector<Surfel>& surfels) {
     std::vector<FlatSurfel> result;

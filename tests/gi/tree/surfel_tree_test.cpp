@@ -83,7 +83,8 @@ TEST_P(Trees, BoundEveryDiscBelow) {
 TEST_P(Trees, NodesHaveRoomForNoMore) {
     const SurfelTree tree = build_tree(surfels());
     // Cells of a flat surface are divided into four, and one of these again: seven children.
-    if (GetParam() >= 1000) EXPECT_LT(static_cast<double>(tree.nodes.size()), 0.3 * static_cast<double>(tree.leaves));
+    if (GetParam() >= 1000)
+        EXPECT_LT(static_cast<double>(tree.nodes.size()), 0.3 * static_cast<double>(tree.leaves));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Trees, testing::Values(1, 2, 7, 8, 9, 100, 5000));
@@ -123,8 +124,8 @@ TEST(SurfelTree, PullsTheMeanOfEvenLight) {
     });
 }
 
-// A wall that was scanned from two rooms is two sheets. Seen from afar it is one node, and each room sees the light
-// of its own sheet, not the mean with the inside of the wall.
+// A wall that was scanned from two rooms is two sheets. Seen from afar it is one node, and each room sees the
+// light of its own sheet, not the mean with the inside of the wall.
 TEST(SurfelTree, NodeOfTwoSheetsShinesWithTheOuterSides) {
     std::vector<FlatSurfel> wall;
     std::vector<SideLight> light;
