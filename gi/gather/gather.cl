@@ -268,7 +268,8 @@ kernel void gather(global const WideNode* nodes, global const float* light, glob
             float x = set[pixel] * scale, y = set[PIXELS + pixel] * scale;
             float3 ray = (float3)(x, y, sqrt(fmax(1.0f - x * x - y * y, 0.0f)));
             slot = seen_slot(nodes, slots, slot, depths[pixel], ray, direction, lifted, position, point.lift, scale);
-            uint back = dot(slot_axis(nodes, slot), direction) < 0.0f ? 0u : 1u;
+            // The start sees the side of the plane on which it is.
+            uint back = dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - start) < 0.0f ? 0u : 1u;
             float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
             sum += weight * vload3(2 * slot + back, light);
         }

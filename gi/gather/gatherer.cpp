@@ -67,7 +67,7 @@ Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed)
 
 Result<void> Gatherer::gather(ClDevice& device, std::span<const GatherPoint> points, uint32_t side,
                               uint64_t seed, std::span<glm::vec4> results, const std::atomic<bool>* stop,
-                              Progress* progress) {
+                              const std::function<void(size_t)>& done) {
     if (empty_) {
         std::ranges::fill(results, glm::vec4(0, 0, 0, 1));
         return {};
@@ -87,7 +87,7 @@ Result<void> Gatherer::gather(ClDevice& device, std::span<const GatherPoint> poi
         LUCARNE_TRY(kernel->run(ClRange(count, 1), nodes_, light_, points_, rays_, kSets,
                                 static_cast<uint32_t>(count), results_));
         LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
-        if (progress) progress->add(count);
+        if (done) done(first + count);
     }
     return {};
 }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -10,7 +11,6 @@
 #include "gi/device/cl/cl_device.h"
 #include "gi/gather/gather_point.h"
 #include "gi/tree/surfel_tree.h"
-#include "io/core/progress.h"
 
 namespace lucarne::gi {
 
@@ -24,10 +24,11 @@ class Gatherer {
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
     /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
     /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`
-    /// becomes true the rest is left out. Errors: the device failed.
+    /// becomes true the rest is left out. `done` is told how many points are finished each time some are.
+    /// Errors: the device failed.
     Result<void> gather(ClDevice& device, std::span<const GatherPoint> points, uint32_t side, uint64_t seed,
                         std::span<glm::vec4> results, const std::atomic<bool>* stop = nullptr,
-                        Progress* progress = nullptr);
+                        const std::function<void(size_t)>& done = {});
 
  private:
     Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);

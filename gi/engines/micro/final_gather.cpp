@@ -8,6 +8,7 @@
 #include "gi/bounce_options.h"
 #include "gi/engines/micro/options.h"
 #include "gi/engines/micro/upsample.h"
+#include "gi/gl_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
@@ -50,7 +51,7 @@ class LobeGather {
             for (uint32_t column = 0; column < grid.columns(); ++column)
                 pixels.push_back(grid.pixel(column, row));
         std::vector<glm::vec4> gathered;
-        LUCARNE_TRY(timed(frame_, "gather", [&] { return gather_at(pixels, gathered); }));
+        LUCARNE_TRY(timed(frame_, "gather", [&] { return gather_at(pixels, gathered, false); }));
         if (step == 1) {
             light = std::move(gathered);
             return {};
@@ -60,7 +61,7 @@ class LobeGather {
         const TimedPass pass(frame_, "upsample");
         const auto missing = upsample(frame_.camera, surfaces, grid, gathered, light);
         counts_.again += missing.size();
-        LUCARNE_TRY(gather_at(missing, gathered));
+        LUCARNE_TRY(gather_at(missing, gathered, true));
         for (size_t i = 0; i < missing.size(); ++i) light[missing[i]] = gathered[i];
         return {};
     }
@@ -85,7 +86,7 @@ class LobeGather {
         return point;
     }
     /// Gathers at those of these pixels that have a surface; results in their order.
-    Result<void> gather_at(std::span<const uint32_t> pixels, std::vector<glm::vec4>& results) {
+    Result<void> gather_at(std::span<const uint32_t> pixels, std::vector<glm::vec4>& results, bool again) {
         std::vector<GatherPoint> points;
         std::vector<size_t> places;
         for (size_t i = 0; i < pixels.size(); ++i) {
@@ -94,12 +95,26 @@ class LobeGather {
             places.push_back(i);
         }
         std::vector<glm::vec4> found(points.size());
+        // Pixels that gather again come on top of those that were expected.
+        const auto done = [&](size_t count) {
+            if (!again) report(static_cast<double>(count) / static_cast<double>(points.size()));
+        };
         LUCARNE_TRY(gatherer_.gather(device_, points, frame_.settings[kMicroBuffer], seed_, found,
-                                     frame_.stop, frame_.progress));
+                                     frame_.stop, done));
         results.assign(pixels.size(), glm::vec4(0.0f));
         for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
         counts_.points += points.size();
         return {};
+    }
+
+    /// Reports this share of the lobe's picture as finished: of all pixels, one part for each lobe.
+    void report(double share) {
+        if (!frame_.progress) return;
+        const double lobes = glossy(frame_) ? 2 : 1, before = lobe_ == Lobe::specular ? 1 : 0;
+        const auto pixels =
+            static_cast<size_t>((before + share) / lobes * static_cast<double>(surfaces_.size()));
+        frame_.progress->add(pixels - reported_);
+        reported_ = pixels;
     }
 
     Frame& frame_;
@@ -107,6 +122,7 @@ class LobeGather {
     Gatherer& gatherer_;
     GatherCounts& counts_;
     uint64_t seed_;
+    size_t reported_ = 0;  ///< pixels
     Lobe lobe_ = Lobe::diffuse;
     std::span<const SurfacePoint> surfaces_;
     std::span<const Reflectance> reflectances_;
