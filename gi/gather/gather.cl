@@ -11,6 +11,10 @@
 #define GRID LUCARNE_GRID
 #define ROW LUCARNE_ROW
 #define PIXELS (GRID * ROW)
+// From how many pixels across nodes are opened. Rows of eight pixels cost as much as one, so smaller whole nodes would
+// only add work. Those that are drawn with a probability are noise.
+#define LARGEST_WHOLE 4.0f
+#define LARGEST_PART 2.0f
 #define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
@@ -24,6 +28,17 @@ float fraction_of(uint seed) {
     seed *= 0x846ca68bu;
     seed ^= seed >> 16;
     return (seed >> 8) * 0x1p-24f;
+}
+
+// The same for a number and the seven that follow it.
+float8 fractions_of(uint first) {
+    uint8 seeds = first + (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
+    seeds ^= seeds >> 16;
+    seeds *= 0x7feb352du;
+    seeds ^= seeds >> 15;
+    seeds *= 0x846ca68bu;
+    seeds ^= seeds >> 16;
+    return convert_float8(seeds >> 8) * 0x1p-24f;
 }
 
 float3 slot_middle(global const WideNode* nodes, uint slot) {
@@ -106,7 +121,7 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
 // and its slot. `side` and `across` are the axes of the picture, which reaches to
 // `scale` along them; `rays` are the directions of its pixels, zero where a pixel has no ray.
 void draw(global const WideNode* nodes, const float* rays, float3 start, float3 side, float3 across, float3 axis,
-          float3 normal, float scale, float* depths, uint* slots) {
+          float3 normal, float scale, uint seed, float* depths, uint* slots) {
     float pixels = 0.5f * GRID / scale;
     int stack[STACK];
     int top = 0;
@@ -125,7 +140,8 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
         above &= dx * axis.x + dy * axis.y + dz * axis.z > -bound;
-        float8 limit = vload8(0, node->pixels) * (scale / GRID);
+        float8 fill = vload8(0, node->fill);
+        float8 limit = select((float8)(LARGEST_PART), (float8)(LARGEST_WHOLE), fill >= 1.0f) * (scale / GRID);
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         if (any(go)) {
@@ -166,7 +182,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
             if (!draws[k]) continue;
             uint slot = (uint)(at * 8 + k);
             int first = (int)left[k], last = (int)right[k], end = (int)lower[k];
-            float radius2 = node->bound[k] * node->bound[k];
+            float radius2 = node->bound[k] * node->bound[k], part = node->fill[k];
             float low_x = node->low_x[k], low_y = node->low_y[k], low_z = node->low_z[k];
             float high_x = node->high_x[k], high_y = node->high_y[k], high_z = node->high_z[k];
             for (int j = (int)upper[k]; j <= end; ++j)
@@ -181,6 +197,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
                     int8 met = (t > 0.0f) & ((t < depth) | ((t == depth) & (held > slot)));
                     met &= (ox >= low_x) & (ox <= high_x) & (oy >= low_y) & (oy <= high_y);
                     met &= (oz >= low_z) & (oz <= high_z) & (ox * ox + oy * oy + oz * oz <= radius2);
+                    if (part < 1.0f) met &= fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel) < part;
                     vstore8(select(depth, t, met), 0, depths + pixel);
                     vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
                 }
@@ -247,7 +264,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, glob
         vstore8((float8)(NOTHING), 0, depths + i);
         vstore8((uint8)(EMPTY), 0, slots + i);
     }
-    draw(nodes, directions, start, side, across, axis, normal, scale, depths, slots);
+    draw(nodes, directions, start, side, across, axis, normal, scale, point.seed, depths, slots);
 
     float3 away = start - position, sum = (float3)(0.0f);
     float3 lifted = (float3)(dot(away, side), dot(away, across), dot(away, axis));

@@ -24,11 +24,11 @@ constexpr size_t kTasks = 256;   // for the nodes of a level
 constexpr size_t kGrain = 1024;  // nodes or surfels that one task processes
 /// Sheets closer together than about this share of their size are one.
 constexpr float kThinnest = 0.002f;
-/// From how many pixels across nodes are opened (WideNode::pixels). Rows of eight pixels cost as much as one,
-/// so smaller flat nodes would only add work.
-constexpr float kFlatPixels = 4.0f, kRaggedPixels = 1.5f, kThickPixels = 0.7f;
-/// A flat node has holes, or an end of its surface, if its surfels cover less than this share of it.
+/// A flat node is drawn whole if its surfels cover at least this share of it; else it has holes, or the end
+/// of its surface. Where points are not even, shares vary.
 constexpr float kFilled = 0.75f;
+/// The part of their area that surfels of many directions show to one, on average.
+constexpr float kShown = 0.6f;
 /// Radii of nodes that stand for nothing, so that no arithmetic on empty slots meets a NaN.
 constexpr float kFarAway = 1e18f;
 
@@ -280,7 +280,8 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.nx[k] = s.axis.x, node.ny[k] = s.axis.y, node.nz[k] = s.axis.z;
     node.bound[k] = s.bound, node.thickness[k] = s.thickness;
     const bool thick = s.thickness > kThickNode * s.bound;
-    node.pixels[k] = leaf ? kFarAway : thick ? kThickPixels : s.fill < kFilled ? kRaggedPixels : kFlatPixels;
+    const float shown = thick ? kShown * s.area / (kPi * s.bound * s.bound) : s.fill;
+    node.fill[k] = leaf || (!thick && shown >= kFilled) ? 1 : std::min(shown, 1.0f);
     glm::vec3 low(-kFarAway), high(kFarAway);
     if (!leaf && !thick) {
         // All discs shall be within the box if they are moved into the plane.

@@ -19,13 +19,14 @@ LUCARNE_CONST float kThickNode = 0.25f;
 // Where a child is small it is drawn as a piece of the plane through its middle: what lies in the sphere and
 // in the box about it. A surfel is its disc. A flat node is cut by its box, the bounds of its discs, so that
 // nodes of one wall overlap and its ends are not beyond those of its discs. A node of several directions has
-// no plane: its disc faces whoever looks. Such nodes, and those with holes, are good only if they are small.
+// no plane: its disc faces whoever looks. Such nodes, and those with holes, are drawn with the probability
+// `fill`.
 LUCARNE_STRUCT(WideNode) {
     float x[8], y[8], z[8];     // middle of the child, m
     float bound[8];             // radius of the sphere about the middle that holds all discs of the child, m
     float nx[8], ny[8], nz[8];  // unit axis: a surfel's normal, or the direction that most normals share
     float thickness[8];         // no disc is farther from the plane through the middle, m
-    float pixels[8];            // from how many pixels of a picture across it has to be opened
+    float fill[8];              // share of what is drawn that its discs cover, up to 1
     float low_x[8], low_y[8], low_z[8], high_x[8], high_y[8], high_z[8];  // the box, from the middle, m
     int child[8];  // number of a node, or one of the constants above
 };
