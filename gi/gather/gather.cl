@@ -11,10 +11,11 @@
 #define GRID LUCARNE_GRID
 #define ROW LUCARNE_ROW
 #define PIXELS (GRID * ROW)
-// From how many pixels across nodes are opened. Rows of eight pixels cost as much as one, so smaller whole nodes would
-// only add work. Those that are drawn with a probability are noise.
-#define LARGEST_WHOLE 4.0f
-#define LARGEST_PART 2.0f
+// Nodes are opened if their radius over their distance is larger. With buffers of 24^2 whole nodes are four pixels
+// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Those that are drawn with a
+// probability are noise.
+#define LARGEST_WHOLE fmin(4.0f / GRID, 0.15f)
+#define LARGEST_PART fmin(2.0f / GRID, 0.075f)
 #define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
@@ -141,7 +142,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
         above &= dx * axis.x + dy * axis.y + dz * axis.z > -bound;
         float8 fill = vload8(0, node->fill);
-        float8 limit = select((float8)(LARGEST_PART), (float8)(LARGEST_WHOLE), fill >= 1.0f) * (scale / GRID);
+        float8 limit = select((float8)(LARGEST_PART), (float8)(LARGEST_WHOLE), fill >= 1.0f) * scale;
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         if (any(go)) {

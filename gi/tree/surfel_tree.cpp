@@ -24,11 +24,11 @@ constexpr size_t kTasks = 256;   // for the nodes of a level
 constexpr size_t kGrain = 1024;  // nodes or surfels that one task processes
 /// Sheets closer together than about this share of their size are one.
 constexpr float kThinnest = 0.002f;
-/// A flat node is drawn whole if its surfels cover at least this share of it; else it has holes, or the end
-/// of its surface. Where points are not even, shares vary.
-constexpr float kFilled = 0.75f;
+/// A flat node is drawn whole if its surfels cover nearly all of it; else it has holes, or the end of its
+/// surface. Where points are not even, shares of few of them vary.
+constexpr float kFilled = 0.92f, kUneven = 1.5f;
 /// The part of their area that surfels of many directions show to one, on average.
-constexpr float kShown = 0.6f;
+constexpr float kShown = 0.8f;
 /// Radii of nodes that stand for nothing, so that no arithmetic on empty slots meets a NaN.
 constexpr float kFarAway = 1e18f;
 
@@ -221,8 +221,9 @@ Disc disc_of(const FlatSurfel& s) {
 struct Summary {
     glm::vec3 middle{0.0f}, axis{0.0f, 0.0f, 1.0f};
     float bound = 0, thickness = 0, area = 0;
-    Box box;         ///< the bounds of its discs, m
-    float fill = 1;  ///< the share of the box's section with its plane that its surfels cover
+    Box box;  ///< the bounds of its discs, m
+    /// The share of the box's section with its plane that its surfels cover; 1 if that is nearly all.
+    float fill = 1;
 };
 
 /// Returns the area of the section of a box with the plane through a point, m^2: the share of a grid of
@@ -271,7 +272,8 @@ Summary summary_of(std::span<const Disc> discs) {
     }
     const glm::vec3 room = sum.thickness * glm::abs(sum.axis);
     const float section = section_of({squares.low - room, squares.high + room}, sum.middle, sum.axis);
-    sum.fill = section > 0 ? sum.area / section : 1;
+    const float fill = section > 0 ? sum.area / section : 1;
+    sum.fill = fill < kFilled - kUneven / std::sqrt(static_cast<float>(discs.size())) ? fill : 1;
     return sum;
 }
 
@@ -281,7 +283,7 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.bound[k] = s.bound, node.thickness[k] = s.thickness;
     const bool thick = s.thickness > kThickNode * s.bound;
     const float shown = thick ? kShown * s.area / (kPi * s.bound * s.bound) : s.fill;
-    node.fill[k] = leaf || (!thick && shown >= kFilled) ? 1 : std::min(shown, 1.0f);
+    node.fill[k] = leaf ? 1 : std::min(shown, 1.0f);
     glm::vec3 low(-kFarAway), high(kFarAway);
     if (!leaf && !thick) {
         // All discs shall be within the box if they are moved into the plane.

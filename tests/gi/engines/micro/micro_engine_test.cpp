@@ -1,0 +1,100 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
+#include "gi/engines/micro/options.h"
+#include "gi/engines/reference/options.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
+
+namespace lucarne::gi {
+namespace {
+
+using scenes::AnalyticScene, scenes::look, scenes::material, scenes::spot;
+
+class MicroEngineTest : public OnDevice {
+ protected:
+    scenes::Rendered render(const AnalyticScene& scene, std::string_view engine = "micro") {
+        auto rendered = scenes::render(*device, engine, scene);
+        EXPECT_TRUE(rendered) << rendered.error().line();
+        return rendered ? std::move(*rendered) : scenes::Rendered{};
+    }
+};
+
+/// A room with a lit ceiling, seen so that a wall and the floor fill the picture.
+AnalyticScene room(const Material& surface) {
+    AnalyticScene scene;
+    scene.surfels = scenes::closed_box(2, 60, glm::vec3(0.5f));
+    for (Surfel& s : scene.surfels)
+        if (s.position.z > 1.99f && std::abs(s.position.x - 1) < .4f && std::abs(s.position.y - 1) < .4f)
+            s.material = 1;
+    scene.materials = {surface, material(1, 0, 1, 5)};
+    scene.camera = look(glm::vec3(0.4f, 0.4f, 1.2f), glm::vec3(1.4f, 1.4f, 0.1f), 0.7f, 48);
+    scene.settings.set(kOnlyBounce, 1);
+    scene.settings.set(micro::kMicroBuffer, 24);
+    scene.settings.set(micro::kGatherEvery, 1);
+    scene.settings.set(reference::kSamples, 256);
+    return scene;
+}
+
+TEST_F(MicroEngineTest, GlossyWallsReflectALampAsInTheReference) {
+    for (const float exponent : {1.0f, 10.0f, 100.0f}) {
+        const AnalyticScene scene = room(material(0.5f, 0.4f, exponent, 0));
+        const double found = mean_luminance(render(scene).radiance);
+        EXPECT_NEAR(found / mean_luminance(render(scene, "reference").radiance), 1, 0.03) << exponent;
+    }
+}
+
+TEST_F(MicroEngineTest, FewerGatheringPixelsGiveTheSameLight) {
+    AnalyticScene scene = room(material(1, 0, 1, 0));
+    const auto all = render(scene);
+    for (const uint32_t every : {2u, 4u}) {
+        scene.settings.set(micro::kGatherEvery, every);
+        const auto some = render(scene);
+        EXPECT_NEAR(mean_luminance(some.radiance) / mean_luminance(all.radiance), 1, 0.01) << every;
+        double points = 0;
+        for (const auto& [name, value] : some.stats)
+            if (name == "gather_points") points = value;
+        EXPECT_LT(points, 48 * 48 * 0.6);
+    }
+}
+
+TEST_F(MicroEngineTest, SmallMicroBuffersGiveTheSameLightOnAverage) {
+    AnalyticScene scene = room(material(1, 0, 1, 0));
+    const double fine = mean_luminance(render(scene).radiance);
+    scene.settings.set(micro::kMicroBuffer, 8);
+    EXPECT_NEAR(mean_luminance(render(scene).radiance) / fine, 1, 0.03);
+}
+
+TEST_F(MicroEngineTest, SurfelsWithoutNormalsNeitherShineNorBlock) {
+    AnalyticScene scene = room(material(1, 0, 1, 0));
+    for (Surfel& s : scene.surfels)
+        if (s.position.z > 1.99f) s.normal = glm::vec3(0.0f);
+    EXPECT_EQ(mean_luminance(render(scene).radiance), 0);
+}
+
+TEST_F(MicroEngineTest, HugeEmissionIsFinite) {
+    AnalyticScene scene = room(material(1, 0, 1, 0));
+    const double mean = mean_luminance(render(scene).radiance);
+    scene.materials[1] = material(1, 0, 1, 5e12f);
+    EXPECT_NEAR(mean_luminance(render(scene).radiance) / mean, 1e12, 1e9);
+}
+
+TEST_F(MicroEngineTest, OneSurfelIsASceneToo) {
+    AnalyticScene scene = room(material(1, 0, 1, 0));
+    scene.surfels.resize(1);
+    for (const glm::vec4& pixel : render(scene).radiance) ASSERT_EQ(glm::vec3(pixel), glm::vec3(0.0f));
+}
+
+TEST_F(MicroEngineTest, ACameraInAWallGivesFinitePictures) {
+    AnalyticScene scene = room(material(1, 0, 1, 0));
+    scene.camera = look(glm::vec3(0.0f, 1, 1), glm::vec3(1, 1.2f, 1), 0.7f, 32);
+    for (const glm::vec4& pixel : render(scene).radiance) ASSERT_TRUE(std::isfinite(pixel.x));
+}
+
+}  // namespace
+}  // namespace lucarne::gi
