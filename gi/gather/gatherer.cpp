@@ -10,10 +10,15 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr uint32_t kSets = 32;          // of rays; points choose among them
-constexpr float kNoRay = 2;             // as x
-constexpr double kRim = 1 - 1e-6;       // rays in the plane of the surface would meet it
-constexpr size_t kPointsAtOnce = 4096;  // a run of the kernel: short, so that it can be stopped in between
+constexpr uint32_t kSets = 32;     // of rays; points choose among them
+constexpr float kNoRay = 2;        // as x
+constexpr double kRim = 1 - 1e-6;  // rays in the plane of the surface would meet it
+/// Points of one run of the kernel, short enough for displays' watchdogs and to be stopped in between, and
+/// work-items of a group.
+struct Launch {
+    size_t points, group;
+};
+constexpr Launch kOnProcessor{4096, 1}, kOnGpu{65536, 32};
 
 /// A disc in a square holds pi / 4 of its pixels.
 uint32_t grid_for(uint32_t side) {
@@ -77,14 +82,15 @@ Result<void> Gatherer::gather(ClDevice& device, std::span<const GatherPoint> poi
     const Defines defines = {{"LUCARNE_GRID", fmt::format("{}", grid)},
                              {"LUCARNE_ROW", fmt::format("{}", row_for(grid))}};
     LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel("gi/gather/gather.cl", "gather", defines));
-    const size_t most = std::min(points.size(), kPointsAtOnce);
+    const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
+    const size_t most = std::min(points.size(), launch.points);
     LUCARNE_TRY(device.reserve(points_, most * sizeof(GatherPoint), "gather points"));
     LUCARNE_TRY(device.reserve(results_, most * sizeof(glm::vec4), "gathered light"));
-    for (size_t first = 0; first < points.size(); first += kPointsAtOnce) {
+    for (size_t first = 0; first < points.size(); first += launch.points) {
         if (stop && *stop) return {};
-        const size_t count = std::min(kPointsAtOnce, points.size() - first);
+        const size_t count = std::min(launch.points, points.size() - first);
         LUCARNE_TRY(points_.upload(0, std::as_bytes(points.subspan(first, count))));
-        LUCARNE_TRY(kernel->run(ClRange(count, 1), nodes_, light_, points_, rays_, kSets,
+        LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, light_, points_, rays_, kSets,
                                 static_cast<uint32_t>(count), results_));
         LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
         if (done) done(first + count);
