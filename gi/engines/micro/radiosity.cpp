@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/shared/brdf.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
