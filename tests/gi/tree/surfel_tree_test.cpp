@@ -83,8 +83,9 @@ TEST_P(Trees, BoundEveryDiscBelow) {
 TEST_P(Trees, NodesHaveRoomForNoMore) {
     const SurfelTree tree = build_tree(surfels());
     // Cells of a flat surface are divided into four, and one of these again: seven children.
-    if (GetParam() >= 1000)
+    if (GetParam() >= 1000) {
         EXPECT_LT(static_cast<double>(tree.nodes.size()), 0.3 * static_cast<double>(tree.leaves));
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Trees, testing::Values(1, 2, 7, 8, 9, 100, 5000));
