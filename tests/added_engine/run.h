@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <glm/common.hpp>
+#include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 
 #include "io/image/image.h"
