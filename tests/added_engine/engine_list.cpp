@@ -2,6 +2,8 @@
 #include <array>
 
 #include "gi/engines/direct/direct.h"
+#include "gi/engines/micro/micro.h"
+#include "gi/engines/reference/reference.h"
 #include "gi/engines/unlit/unlit.h"
 #include "gi/engines/vpl/vpl.h"
 #include "gi/registry.h"
@@ -12,8 +14,8 @@
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array all = {direct_engine(), vpl_engine(),    unlit_engine(),
-                                   paint_engine(),  opencl_engine(), mean_engine()};
+    static const std::array all = {direct_engine(), vpl_engine(),   micro_engine(),  reference_engine(),
+                                   unlit_engine(),  paint_engine(), opencl_engine(), mean_engine()};
     return all;
 }
 
