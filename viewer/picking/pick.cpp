@@ -32,8 +32,9 @@ std::vector<Candidate> candidates(const Picture& picture, const glm::ivec2& at) 
             if (id != gi::kNoSurfel && distance2 <= kReach * kReach) found.push_back({id, distance2});
         }
     std::ranges::sort(found, {}, [](const Candidate& c) { return std::pair(c.id, c.distance2); });
-    const auto again = std::ranges::unique(found, {}, &Candidate::id);
-    found.erase(again.begin(), again.end());
+    // Not std::ranges::unique: clang 14, which builds the fuzzers, cannot compile its result.
+    const auto same = [](const Candidate& a, const Candidate& b) { return a.id == b.id; };
+    found.erase(std::unique(found.begin(), found.end(), same), found.end());
     std::ranges::sort(found, {}, [](const Candidate& c) { return std::pair(c.distance2, c.id); });
     if (found.size() > kMostCandidates) found.resize(kMostCandidates);
     return found;
