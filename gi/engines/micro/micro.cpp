@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "gi/bounce_options.h"
 #include "gi/engines/micro/final_gather.h"
@@ -22,7 +24,7 @@ constexpr const OptionInfo* kOptions[] = {
     &kRadiosityLevel.info, &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "micro",
                            .label = "Final gathering",
-                           .description = "every pixel gathers the light of all surfels, on OpenCL",
+                           .description = "final gathering of the light of all surfels, on OpenCL",
                            .options = kOptions,
                            .needs = {.light_cut = true, .light_views = true, .opencl = true},
                            .reports_progress = true};
@@ -44,7 +46,8 @@ class MicroEngine final : public Engine {
     struct Basis {
         SceneRevisions scene;
         LightCutRevisions cuts;
-        uint64_t index = 0;  ///< Frame::index, where lights are sampled
+        std::vector<Light>
+            lights;  ///< of the views: samples of lights with a size differ from frame to frame
         bool operator==(const Basis&) const = default;
     };
     Result<void> make_light(Frame& frame);
@@ -95,8 +98,8 @@ Result<void> MicroEngine::make_light(Frame& frame) {
         LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));
         tree_of_ = cuts_.light;
     }
-    const bool sampled = views_.size() > frame.lights.size();
-    const Basis basis{scene_, cuts_, sampled ? frame.index : 0};
+    Basis basis{scene_, cuts_, {}};
+    for (const LightView& view : views_) basis.lights.push_back(view.light);
     if (light_of_ == basis) return {};
     light_of_.reset();
     const EngineSettings& s = frame.settings;
@@ -117,7 +120,7 @@ Result<void> MicroEngine::make_light(Frame& frame) {
     if (frame.stopped()) return {};
     pull_light(lit_.tree(), light, slots);
     LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
-    light_of_ = basis;
+    light_of_ = std::move(basis);
     return {};
 }
 

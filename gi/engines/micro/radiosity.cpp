@@ -15,9 +15,9 @@ namespace lucarne::gi::micro {
 namespace {
 
 constexpr size_t kSurfelsATask = 16384;
-/// Nodes that are thicker than this share of their size hold surfaces of several directions; they are
-/// divided until they are a quarter of the size of flat ones.
-constexpr float kFlat = 0.25f;
+/// Thick nodes hold surfaces of several directions; they are divided until they are this much smaller than
+/// flat ones.
+constexpr float kThickShare = 0.25f;
 
 /// Calls visit(slot) for the highest slots that are no larger than `size`; stops once there were more than
 /// `most`. Returns their number.
@@ -32,8 +32,8 @@ size_t for_each_slot(const SurfelTree& tree, float size, size_t most, const Visi
         for (uint32_t k = 0; k < 8; ++k) {
             if (node.child[k] == kNoChild) continue;
             const float bound = node.bound[k];
-            const bool flat = node.thickness[k] <= kFlat * bound;
-            if (node.child[k] == kLeafChild || bound <= (flat ? size : 0.25f * size)) {
+            const bool flat = node.thickness[k] <= kThickNode * bound;
+            if (node.child[k] == kLeafChild || bound <= (flat ? size : kThickShare * size)) {
                 ++found;
                 visit(8 * at + k);
             } else {
