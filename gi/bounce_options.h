@@ -35,6 +35,14 @@ inline constexpr Option<int32_t> kOnlyBounce{{
     .keeps = true,
 }};
 
+/// Whether the picture shows direct light and emission, and whether it shows indirect light.
+inline bool wants_direct(const EngineSettings& s) {
+    return s[kOnlyBounce] <= 0;
+}
+inline bool wants_indirect(const EngineSettings& s) {
+    return s[kOnlyBounce] < 0 ? s[kBounces] > 0 : s[kOnlyBounce] > 0;
+}
+
 inline constexpr Option<uint64_t> kSeed{{
     .kind = OptionKind::integer,
     .key = "seed",

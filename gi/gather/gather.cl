@@ -21,17 +21,7 @@
 #define NOTHING 1e30f
 #define MOST_SHIFT 4.0f  // in lifts, see seen_slot()
 
-// Numbers from 0 to 1.
-float fraction_of(uint seed) {
-    seed ^= seed >> 16;
-    seed *= 0x7feb352du;
-    seed ^= seed >> 15;
-    seed *= 0x846ca68bu;
-    seed ^= seed >> 16;
-    return (seed >> 8) * 0x1p-24f;
-}
-
-// The same for a number and the seven that follow it.
+// Numbers from 0 to 1 for a number and the seven that follow it.
 float8 fractions_of(uint first) {
     uint8 seeds = first + (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
     seeds ^= seeds >> 16;
@@ -40,6 +30,19 @@ float8 fractions_of(uint first) {
     seeds *= 0x846ca68bu;
     seeds ^= seeds >> 16;
     return convert_float8(seeds >> 8) * 0x1p-24f;
+}
+
+// Pushes those children for which `go` is set; returns the new height of the stack.
+int push(int8 go, int8 child, int* stack, int top) {
+    if (!any(go)) return top;
+    int goes[8], children[8];
+    vstore8(go, 0, goes);
+    vstore8(child, 0, children);
+    for (int k = 0; k < 8; ++k) {
+        stack[top] = children[k];
+        top += goes[k] != 0;
+    }
+    return top;
 }
 
 float3 slot_middle(global const WideNode* nodes, uint slot) {
@@ -70,15 +73,7 @@ uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, f
         float8 beside = dx * dx + dy * dy + dz * dz - along * along;
         int8 near = (beside <= bound * bound * 1.0001f) & (along > -bound) & (along < *most + bound);
         int8 go = near & (child >= 0);
-        if (any(go)) {
-            int goes[8], children[8];
-            vstore8(go, 0, goes);
-            vstore8(child, 0, children);
-            for (int k = 0; k < 8; ++k) {
-                stack[top] = children[k];
-                top += goes[k] != 0;
-            }
-        }
+        top = push(go, child, stack, top);
         int8 leaf = near & (child == (int8)(kLeafChild));
         if (!any(leaf)) continue;
         float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
@@ -119,8 +114,8 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
 }
 
 // Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
-// and its slot. `side` and `across` are the axes of the picture, which reaches to
-// `scale` along them; `rays` are the directions of its pixels, zero where a pixel has no ray.
+// and its slot. `side` and `across` are the axes of the picture, which reaches to `scale` along them; `rays` are the
+// directions of its pixels, zero where a pixel has no ray.
 void draw(global const WideNode* nodes, const float* rays, float3 start, float3 side, float3 across, float3 axis,
           float3 normal, float scale, uint seed, float* depths, uint* slots) {
     float pixels = 0.5f * GRID / scale;
@@ -145,15 +140,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         float8 limit = select((float8)(LARGEST_PART), (float8)(LARGEST_WHOLE), fill >= 1.0f) * scale;
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
-        if (any(go)) {
-            int goes[8], children[8];
-            vstore8(go, 0, goes);
-            vstore8(child, 0, children);
-            for (int k = 0; k < 8; ++k) {
-                stack[top] = children[k];
-                top += goes[k] != 0;
-            }
-        }
+        top = push(go, child, stack, top);
         if (!any(drawn)) continue;
         float8 nearer = rsqrt(distance2);
         int8 thick = (thickness > bound * kThickNode) & (child >= 0);
@@ -242,7 +229,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, glob
     float3 start = start_of(nodes, point);
     float3 axis = (float3)(point.axis.x, point.axis.y, point.axis.z);
     float scale = point.scale;
-    float angle = 6.28318531f * fraction_of(point.seed);
+    float angle = 6.28318531f * fractions_of(point.seed).s0;
     float3 u = normalize(cross(fabs(axis.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), axis));
     float3 v = cross(axis, u);
     float3 side = cos(angle) * u + sin(angle) * v, across = cross(axis, side);

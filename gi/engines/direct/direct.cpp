@@ -40,7 +40,7 @@ class DirectEngine : public Engine {
 };
 
 Result<void> DirectEngine::render(Frame& frame) {
-    if (frame.settings[kOnlyBounce] > 0) {  // this engine draws no indirect bounce
+    if (!wants_direct(frame.settings)) {  // this engine draws no indirect bounce
         frame.gl.radiance.clear(0);
         return {};
     }

@@ -81,13 +81,6 @@ Result<void> MicroEngine::prepare(Frame& frame) {
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }
 
-bool wants_direct(const EngineSettings& s) {
-    return s[kOnlyBounce] <= 0;
-}
-bool wants_indirect(const EngineSettings& s) {
-    return s[kOnlyBounce] < 0 ? s[kBounces] > 0 : s[kOnlyBounce] > 0;
-}
-
 /// Brings tree and light up to date.
 Result<void> MicroEngine::make_light(Frame& frame) {
     if (tree_of_ != cuts_.light) {

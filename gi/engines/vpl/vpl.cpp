@@ -71,13 +71,6 @@ class VplEngine : public Engine {
     bool indirect_ = false;  ///< the last frame had indirect light
 };
 
-bool wants_direct(const EngineSettings& s) {
-    return s[kOnlyBounce] <= 0;
-}
-bool wants_indirect(const EngineSettings& s) {
-    return s[kOnlyBounce] < 0 ? s[kBounces] > 0 : s[kOnlyBounce] > 0;
-}
-
 Result<void> VplEngine::prepare(Frame& frame) {
     const EngineSettings& s = frame.settings;
     if (s[kInterleave] != 1 && s[kInterleave] != 2 && s[kInterleave] != 4)
