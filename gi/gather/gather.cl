@@ -6,6 +6,7 @@
 // LUCARNE_GRID pixels a side about it, in rows of LUCARNE_ROW, which leave room for vectors of eight behind the last
 // pixel.
 #include "gi/gather/gather_point.h"
+#include "gi/gather/sky_picture.h"
 #include "gi/tree/wide_node.h"
 
 #define GRID LUCARNE_GRID
@@ -216,11 +217,19 @@ uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float
     return away <= allowed ? other : slot;
 }
 
+float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction) {
+    vec2 place = environment_place(direction, sky.rotation);
+    uint x = min((uint)(place.x * sky.width), sky.width - 1u), y = min((uint)(place.y * sky.height), sky.height - 1u);
+    return vload3(y * sky.width + x, texels);
+}
+
 // For each point: the mean radiance of its rays, W/(sr m^2) (times pi: irradiance), and the share of rays that meet
-// nothing. `light`: six floats a slot, the radiance of its front and of its back. `rays`: sets of x and y of all
-// pixels, in the unit disc; x is over 1 where a pixel has no ray.
-kernel void gather(global const WideNode* nodes, global const float* light, global const GatherPoint* points,
-                   global const float* rays, uint sets, uint count, global float4* results) {
+// nothing. `light`: six floats a slot, the radiance of its front and of its back; zero: `nodes` only block. `sky`
+// shines where there is nothing; without texels it is dark. `rays`: sets of x and y of all pixels, in the unit disc; x
+// is over 1 where a pixel has no ray.
+kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* sky_texels,
+                   SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
+                   global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
     GatherPoint point = points[number];
@@ -266,16 +275,18 @@ kernel void gather(global const WideNode* nodes, global const float* light, glob
             float height = dot(direction, normal);
             if (!(height > 0.0f)) continue;
             uint slot = slots[pixel];
-            if (slot == EMPTY) {
-                ++empty;
-                continue;
-            }
             float x = set[pixel] * scale, y = set[PIXELS + pixel] * scale;
             float3 ray = (float3)(x, y, sqrt(fmax(1.0f - x * x - y * y, 0.0f)));
+            float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
+            if (slot == EMPTY) {
+                ++empty;
+                if (sky.width > 0) sum += weight * sky_radiance(sky_texels, sky, direction);
+                continue;
+            }
+            if (!lit) continue;
             slot = seen_slot(nodes, slots, slot, depths[pixel], ray, direction, lifted, position, point.lift, scale);
             // The start sees the side of the plane on which it is.
             uint back = dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - start) < 0.0f ? 0u : 1u;
-            float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
             sum += weight * vload3(2 * slot + back, light);
         }
     results[number] = (float4)(sum / cast, (float)(empty) / cast);

@@ -34,8 +34,8 @@ uint32_t row_for(uint32_t grid) {
 
 Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
     empty_ = tree.empty();
-    if (empty_) return {};
-    const auto bytes = std::as_bytes(std::span(tree.nodes));
+    const WideNode nothing = empty_node();
+    const auto bytes = std::as_bytes(empty_ ? std::span(&nothing, 1) : std::span(tree.nodes));
     LUCARNE_TRY(device.reserve(nodes_, bytes.size(), "tree of surfels"));
     return nodes_.upload(0, bytes);
 }
@@ -45,6 +45,14 @@ Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> sl
     const auto bytes = std::as_bytes(slots);
     LUCARNE_TRY(device.reserve(light_, bytes.size(), "light of the tree"));
     return light_.upload(0, bytes);
+}
+
+Result<void> Gatherer::set_sky(ClDevice& device, const GatherSky& sky) {
+    sky_ = {sky.width, sky.height, sky.rotation, 0};
+    if (sky.texels.empty()) return {};
+    const auto bytes = std::as_bytes(std::span(sky.texels));
+    LUCARNE_TRY(device.reserve(sky_texels_, bytes.size(), "sky"));
+    return sky_texels_.upload(0, bytes);
 }
 
 /// Makes kSets sets of rays: one in every pixel of the unit disc, at a random place of the pixel.
@@ -70,13 +78,11 @@ Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed)
     return {};
 }
 
-Result<void> Gatherer::gather(ClDevice& device, std::span<const GatherPoint> points, uint32_t side,
-                              uint64_t seed, std::span<glm::vec4> results, const std::atomic<bool>* stop,
-                              const std::function<void(size_t)>& done) {
-    if (empty_) {
-        std::ranges::fill(results, glm::vec4(0, 0, 0, 1));
-        return {};
-    }
+Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points,
+                              uint32_t side, uint64_t seed, std::span<glm::vec4> results,
+                              const std::atomic<bool>* stop, const std::function<void(size_t)>& done) {
+    const uint32_t lit = what != Gathered::sky && !empty_;
+    const SkyPicture sky = what != Gathered::light_of_surfels ? sky_ : SkyPicture{};
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
     const Defines defines = {{"LUCARNE_GRID", fmt::format("{}", grid)},
@@ -90,7 +96,8 @@ Result<void> Gatherer::gather(ClDevice& device, std::span<const GatherPoint> poi
         if (stop && *stop) return {};
         const size_t count = std::min(launch.points, points.size() - first);
         LUCARNE_TRY(points_.upload(0, std::as_bytes(points.subspan(first, count))));
-        LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, light_, points_, rays_, kSets,
+        LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit,
+                                sky.width > 0 ? sky_texels_ : nodes_, sky, points_, rays_, kSets,
                                 static_cast<uint32_t>(count), results_));
         LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
         if (done) done(first + count);

@@ -10,9 +10,14 @@
 
 #include "gi/device/cl/cl_device.h"
 #include "gi/gather/gather_point.h"
+#include "gi/gather/gather_sky.h"
+#include "gi/gather/sky_picture.h"
 #include "gi/tree/surfel_tree.h"
 
 namespace lucarne::gi {
+
+/// Which light points gather.
+enum class Gathered : uint8_t { light_of_surfels, sky, both };
 
 /// Gathers the light of a tree of surfels at points, on an OpenCL device (gather.cl).
 class Gatherer {
@@ -21,19 +26,22 @@ class Gatherer {
     Result<void> set_tree(ClDevice& device, const SurfelTree& tree);
     /// Sends the light of the tree's slots (pull_light()). Errors: device memory.
     Result<void> set_light(ClDevice& device, std::span<const SideLight> slots);
+    /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.
+    Result<void> set_sky(ClDevice& device, const GatherSky& sky);
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
     /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
     /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`
     /// becomes true the rest is left out. `done` is told how many points are finished each time some are.
     /// Errors: the device failed.
-    Result<void> gather(ClDevice& device, std::span<const GatherPoint> points, uint32_t side, uint64_t seed,
-                        std::span<glm::vec4> results, const std::atomic<bool>* stop = nullptr,
+    Result<void> gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points, uint32_t side,
+                        uint64_t seed, std::span<glm::vec4> results, const std::atomic<bool>* stop = nullptr,
                         const std::function<void(size_t)>& done = {});
 
  private:
     Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);
 
-    ClBuffer nodes_, light_, points_, results_, rays_;
+    ClBuffer nodes_, light_, sky_texels_, points_, results_, rays_;
+    SkyPicture sky_{};
     bool empty_ = true;
     uint32_t grid_ = 0;
     uint64_t seed_ = 0;

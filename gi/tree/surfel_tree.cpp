@@ -295,15 +295,6 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.high_x[k] = high.x, node.high_y[k] = high.y, node.high_z[k] = high.z;
 }
 
-WideNode empty_node() {
-    WideNode node{};
-    for (size_t k = 0; k < 8; ++k) {
-        set_child(node, k, {.middle = glm::vec3(kFarAway)}, true);
-        node.child[k] = kNoChild;
-    }
-    return node;
-}
-
 /// Sets the nodes, level by level.
 void divide_all(SurfelTree& tree, std::span<const CodeIndex> order, std::span<const Disc> discs) {
     std::vector<Range> level{{0, order.size()}};
@@ -370,6 +361,15 @@ Facing facing(const WideNode& node, size_t k, float area, const Summary& parent)
 }
 
 }  // namespace
+
+WideNode empty_node() {
+    WideNode node{};
+    for (size_t k = 0; k < 8; ++k) {
+        set_child(node, k, {.middle = glm::vec3(kFarAway)}, true);
+        node.child[k] = kNoChild;
+    }
+    return node;
+}
 
 SurfelTree build_tree(std::span<const FlatSurfel> surfels) {
     SurfelTree tree;

@@ -31,6 +31,9 @@ struct SurfelTree {
     bool empty() const { return nodes.empty(); }
 };
 
+/// Returns a node without children.
+WideNode empty_node();
+
 /// Builds the tree over those surfels that have a disc: a finite position and normal, and a radius over
 /// zero. The same surfels give the same tree, whatever the number of threads. A surfel without an area stands
 /// for that of its disc.

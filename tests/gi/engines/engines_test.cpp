@@ -8,9 +8,9 @@
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
-#include "gi/engines/micro/options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/gather/gather_options.h"
 #include "gi/shared/brdf.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -27,9 +27,9 @@ void fine_vpls(EngineSettings& settings) {
     settings.set(vpl::kAtlas, 2048);
 }
 void fine_buffers(EngineSettings& settings) {
-    settings.set(micro::kMicroBuffer, 24);
-    settings.set(micro::kGatherEvery, 1);
-    settings.set(micro::kRadiosityLevel, 12);
+    settings.set(kMicroBuffer, 24);
+    settings.set(kGatherEvery, 1);
+    settings.set(kRadiosityLevel, 12);
 }
 void many_paths(EngineSettings& settings) {
     settings.set(reference::kSamples, 256);

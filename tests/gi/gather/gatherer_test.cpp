@@ -33,7 +33,7 @@ class GathererTest : public testing::Test {
         EXPECT_TRUE(gatherer.set_tree(*opencl_, tree));
         EXPECT_TRUE(gatherer.set_light(*opencl_, slots));
         std::vector<glm::vec4> results(points.size());
-        const auto done = gatherer.gather(*opencl_, points, side, 1, results);
+        const auto done = gatherer.gather(*opencl_, Gathered::light_of_surfels, points, side, 1, results);
         EXPECT_TRUE(done) << done.error().line();
         return results;
     }

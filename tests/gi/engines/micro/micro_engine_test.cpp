@@ -5,8 +5,8 @@
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
-#include "gi/engines/micro/options.h"
 #include "gi/engines/reference/options.h"
+#include "gi/gather/gather_options.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "tests/gi/on_device.h"
@@ -35,8 +35,8 @@ AnalyticScene room(const Material& surface) {
     scene.materials = {surface, material(1, 0, 1, 5)};
     scene.camera = look(glm::vec3(0.4f, 0.4f, 1.2f), glm::vec3(1.4f, 1.4f, 0.1f), 0.7f, 48);
     scene.settings.set(kOnlyBounce, 1);
-    scene.settings.set(micro::kMicroBuffer, 24);
-    scene.settings.set(micro::kGatherEvery, 1);
+    scene.settings.set(kMicroBuffer, 24);
+    scene.settings.set(kGatherEvery, 1);
     scene.settings.set(reference::kSamples, 256);
     return scene;
 }
@@ -53,7 +53,7 @@ TEST_F(MicroEngineTest, FewerGatheringPixelsGiveTheSameLight) {
     AnalyticScene scene = room(material(1, 0, 1, 0));
     const auto all = render(scene);
     for (const uint32_t every : {2u, 4u}) {
-        scene.settings.set(micro::kGatherEvery, every);
+        scene.settings.set(kGatherEvery, every);
         const auto some = render(scene);
         EXPECT_NEAR(mean_luminance(some.radiance) / mean_luminance(all.radiance), 1, 0.01) << every;
         double points = 0;
@@ -66,7 +66,7 @@ TEST_F(MicroEngineTest, FewerGatheringPixelsGiveTheSameLight) {
 TEST_F(MicroEngineTest, SmallMicroBuffersGiveTheSameLightOnAverage) {
     AnalyticScene scene = room(material(1, 0, 1, 0));
     const double fine = mean_luminance(render(scene).radiance);
-    scene.settings.set(micro::kMicroBuffer, 8);
+    scene.settings.set(kMicroBuffer, 8);
     EXPECT_NEAR(mean_luminance(render(scene).radiance) / fine, 1, 0.03);
 }
 

@@ -4,10 +4,11 @@
 
 #include "gi/options.h"
 
-namespace lucarne::gi::micro {
+// Options of engines that gather light at points.
+namespace lucarne::gi {
 
-inline constexpr std::array<int64_t, 5> kSides = {8, 12, 16, 24, 32};
-inline constexpr std::array<int64_t, 3> kSteps = {1, 2, 4};
+inline constexpr std::array<int64_t, 5> kBufferSides = {8, 12, 16, 24, 32};
+inline constexpr std::array<int64_t, 3> kGatherSteps = {1, 2, 4};
 
 inline constexpr Option<uint32_t> kMicroBuffer{{
     .kind = OptionKind::integer,
@@ -17,7 +18,7 @@ inline constexpr Option<uint32_t> kMicroBuffer{{
     .cost = "directions along a side: twice as many take four times as long, and resolve finer shadows",
     .least = 8,
     .most = 32,
-    .values = kSides,
+    .values = kBufferSides,
     .slider = {8, 32, true},
     .defaults = {int64_t{8}, int64_t{16}, int64_t{24}},
     .cheaper = -1,
@@ -32,7 +33,7 @@ inline constexpr Option<uint32_t> kGatherEvery{{
             "in indirect light",
     .least = 1,
     .most = 4,
-    .values = kSteps,
+    .values = kGatherSteps,
     .slider = {1, 4, true},
     .defaults = {int64_t{4}, int64_t{4}, int64_t{1}},
     .cheaper = 1,
@@ -52,4 +53,4 @@ inline constexpr Option<uint32_t> kRadiosityLevel{{
     .cheaper = -1,
 }};
 
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

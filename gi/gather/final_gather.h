@@ -7,18 +7,18 @@
 #include "gi/gather/gatherer.h"
 #include "gi/host_frame.h"
 
-namespace lucarne::gi::micro {
+namespace lucarne::gi {
 
 struct GatherCounts {
     size_t points = 0;  ///< micro-buffers of the frame
     size_t again = 0;   ///< of these, for pixels between which nothing could be interpolated
 };
 
-/// Returns the light that each pixel of the frame reflects of the light that `gatherer` holds, W/(sr m^2),
+/// Returns what each pixel of the frame reflects of `what`, the light that `gatherer` holds, W/(sr m^2),
 /// row 0 on top. Diffuse and specular lobes gather by micro-buffers of their own. Pixels between those that
 /// gather (kGatherEvery) are interpolated. Leaves out the rest if the frame is stopped. Errors: the device
 /// failed.
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             GatherCounts& counts);
+                                             Gathered what, GatherCounts& counts);
 
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

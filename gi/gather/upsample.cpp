@@ -1,4 +1,4 @@
-#include "gi/engines/micro/upsample.h"
+#include "gi/gather/upsample.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "io/core/parallel.h"
 
-namespace lucarne::gi::micro {
+namespace lucarne::gi {
 namespace {
 
 constexpr float kLeastWeight = 0.05f;
@@ -75,4 +75,4 @@ std::vector<uint32_t> upsample(const CameraView& camera, std::span<const Surface
     return all;
 }
 
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

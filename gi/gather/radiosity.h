@@ -6,7 +6,7 @@
 #include "gi/gather/gatherer.h"
 #include "gi/gather/lit_tree.h"
 
-namespace lucarne::gi::micro {
+namespace lucarne::gi {
 
 /// Exchanges light between surfels (Ritschel et al. 2009, section 4; Jacobi iteration with push and pull,
 /// Cohen & Wallace 1993). A number of surfels that stand for the nodes of a level of the tree gather; the
@@ -18,6 +18,7 @@ class Radiosity {
 
     struct Settings {
         uint32_t bounces = 0;    ///< reflections to compute beyond the own light
+        bool sky = false;        ///< the surfels also reflect the sky of the gatherer
         bool only_last = false;  ///< return the light of the last one alone
         uint32_t side = 16;      ///< of micro-buffers
         uint64_t seed = 0;
@@ -34,4 +35,4 @@ class Radiosity {
     std::vector<uint32_t> place_of_;   ///< by surfel; kNoSurfel: it has no disc
 };
 
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

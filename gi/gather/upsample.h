@@ -8,7 +8,7 @@
 
 #include "gi/host_frame.h"
 
-namespace lucarne::gi::micro {
+namespace lucarne::gi {
 
 /// The pixels of a picture that gather: one in each square of `step` x `step` pixels, at (x, y) of it.
 struct GatherGrid {
@@ -30,4 +30,4 @@ std::vector<uint32_t> upsample(const CameraView& camera, std::span<const Surface
                                const GatherGrid& grid, std::span<const glm::vec4> gathered,
                                std::span<glm::vec4> light);
 
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

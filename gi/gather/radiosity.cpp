@@ -1,4 +1,4 @@
-#include "gi/engines/micro/radiosity.h"
+#include "gi/gather/radiosity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 
-namespace lucarne::gi::micro {
+namespace lucarne::gi {
 namespace {
 
 constexpr size_t kSurfelsATask = 16384;
@@ -124,22 +124,40 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
     std::vector<SideLight> last = light, slots;
     std::vector<GatherPoint> points = points_;
     std::vector<glm::vec4> gathered(points.size());
-    for (uint32_t bounce = 0; bounce < settings.bounces; ++bounce) {
-        pull_light(scene.tree(), last, slots);
-        LUCARNE_TRY(gatherer.set_light(device, slots));
+    const auto gather = [&](Gathered what, uint64_t number) {
         for (size_t i = 0; i < points.size(); ++i)
-            points[i].seed = static_cast<uint32_t>(mix64(settings.seed + bounce, i));
-        LUCARNE_TRY(gatherer.gather(device, points, settings.side, settings.seed, gathered, stop));
+            points[i].seed = static_cast<uint32_t>(mix64(settings.seed + number, i));
+        return gatherer.gather(device, what, points, settings.side, settings.seed, gathered, stop);
+    };
+    // Returns what a surfel reflects of the light that its place gathered.
+    const auto reflected = [&](size_t i) -> SideLight {
+        const uint32_t place = place_of_[i];
+        if (place == kNoSurfel) return {};
+        const bool same = glm::dot(normal_of(scene.surfels()[i]), points[2 * place].normal) >= 0;
+        const glm::vec3 front = kPi * glm::vec3(gathered[2 * place + (same ? 0 : 1)]);
+        const glm::vec3 back = kPi * glm::vec3(gathered[2 * place + (same ? 1 : 0)]);
+        return {reflectances[i] * front, reflectances[i] * back};
+    };
+    if (settings.sky) {
+        LUCARNE_TRY(gather(Gathered::sky, settings.bounces));
         if (stop && *stop) return {};
         parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {
             for (size_t i = first; i < end; ++i) {
-                last[i] = {};
-                const uint32_t place = place_of_[i];
-                if (place == kNoSurfel) continue;
-                const bool same = glm::dot(normal_of(scene.surfels()[i]), points[2 * place].normal) >= 0;
-                const glm::vec3 front = kPi * glm::vec3(gathered[2 * place + (same ? 0 : 1)]);
-                const glm::vec3 back = kPi * glm::vec3(gathered[2 * place + (same ? 1 : 0)]);
-                last[i] = {reflectances[i] * front, reflectances[i] * back};
+                const SideLight sky = reflected(i);
+                last[i].front += sky.front;
+                last[i].back += sky.back;
+            }
+        });
+        light = last;
+    }
+    for (uint32_t bounce = 0; bounce < settings.bounces; ++bounce) {
+        pull_light(scene.tree(), last, slots);
+        LUCARNE_TRY(gatherer.set_light(device, slots));
+        LUCARNE_TRY(gather(Gathered::light_of_surfels, bounce));
+        if (stop && *stop) return {};
+        parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {
+            for (size_t i = first; i < end; ++i) {
+                last[i] = reflected(i);
                 light[i].front += last[i].front;
                 light[i].back += last[i].back;
             }
@@ -149,4 +167,4 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
     return {};
 }
 
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

@@ -1,4 +1,4 @@
-#include "gi/engines/micro/final_gather.h"
+#include "gi/gather/final_gather.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,15 +6,15 @@
 #include <glm/geometric.hpp>
 
 #include "gi/bounce_options.h"
-#include "gi/engines/micro/options.h"
-#include "gi/engines/micro/upsample.h"
+#include "gi/gather/gather_options.h"
+#include "gi/gather/upsample.h"
 #include "gi/gl_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 
-namespace lucarne::gi::micro {
+namespace lucarne::gi {
 namespace {
 
 constexpr size_t kPixelsATask = 4096;
@@ -27,10 +27,11 @@ enum class Lobe : uint8_t { diffuse, specular };
 /// One picture of gathered light: of one lobe of the pixels that have it.
 class LobeGather {
  public:
-    LobeGather(Frame& frame, ClDevice& device, Gatherer& gatherer, GatherCounts& counts)
+    LobeGather(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what, GatherCounts& counts)
         : frame_(frame),
           device_(device),
           gatherer_(gatherer),
+          what_(what),
           counts_(counts),
           seed_(mix64(frame.settings[kSeed], frame.index)) {}
 
@@ -99,7 +100,7 @@ class LobeGather {
         const auto done = [&](size_t count) {
             if (!again) report(static_cast<double>(count) / static_cast<double>(points.size()));
         };
-        LUCARNE_TRY(gatherer_.gather(device_, points, frame_.settings[kMicroBuffer], seed_, found,
+        LUCARNE_TRY(gatherer_.gather(device_, what_, points, frame_.settings[kMicroBuffer], seed_, found,
                                      frame_.stop, done));
         results.assign(pixels.size(), glm::vec4(0.0f));
         for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
@@ -120,6 +121,7 @@ class LobeGather {
     Frame& frame_;
     ClDevice& device_;
     Gatherer& gatherer_;
+    Gathered what_;
     GatherCounts& counts_;
     uint64_t seed_;
     size_t reported_ = 0;  ///< pixels
@@ -131,7 +133,7 @@ class LobeGather {
 }  // namespace
 
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             GatherCounts& counts) {
+                                             Gathered what, GatherCounts& counts) {
     auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     const std::vector<Material> materials = device_materials(frame.materials);
     std::vector<Reflectance> reflectances(surfaces.size());
@@ -141,7 +143,7 @@ Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gat
                 make_reflectance(materials[surfaces[i].material % materials.size()], surfaces[i].albedo);
     });
     counts = {};
-    LobeGather gather(frame, device, gatherer, counts);
+    LobeGather gather(frame, device, gatherer, what, counts);
     std::vector<glm::vec4> light, lobe;
     LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, reflectances, light));
     if (frame.stopped()) return light;
@@ -161,4 +163,4 @@ Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gat
     return light;
 }
 
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

@@ -1,4 +1,4 @@
-#include "gi/engines/micro/upsample.h"
+#include "gi/gather/upsample.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 #include "tests/gi/engines/analytic_frame.h"
 
-namespace lucarne::gi::micro {
+namespace lucarne::gi {
 namespace {
 
 /// A picture of a floor whose left half is four metres lower, seen from above; `empty`: columns without a
@@ -69,4 +69,4 @@ TEST(Upsample, LeavesPixelsWithoutASurfaceBlack) {
 }
 
 }  // namespace
-}  // namespace lucarne::gi::micro
+}  // namespace lucarne::gi

@@ -1,0 +1,79 @@
+#include "gi/gather/tree_lighting.h"
+
+#include <string>
+#include <utility>
+
+#include "gi/gather/gather_options.h"
+#include "gi/gl_frame.h"
+#include "gi/host_frame.h"
+#include "gi/lighting/light_options.h"
+
+namespace lucarne::gi {
+
+void TreeLighting::update(const Changes& changes) {
+    scene_ = changes.scene;
+    cuts_ = changes.light_cuts;
+}
+
+Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
+    if (frame.gl.cuts.light_views.size() < frame.lights.size() || !frame.gl.cuts.light)
+        return failed(std::string(engine), "the cuts of the light are missing");
+    LUCARNE_ASSIGN(opencl_, frame.gl.device.opencl());
+    LUCARNE_TRY(upload_sky(frame, background_));
+    if (sky_of_ != scene_.environment) {
+        sky_of_.reset();
+        sky_ = gather_sky(frame.environment);
+        bright_ = SkyDirections(sky_.bright);
+        LUCARNE_TRY(gatherer_.set_sky(*opencl_, sky_));
+        sky_of_ = scene_.environment;
+    }
+    return upload_materials(frame.gl.device, frame.materials, materials_);
+}
+
+void TreeLighting::begin(Frame& frame) {
+    views_ = light_views(frame, bright_);
+    light_gbuffers_.begin(frame.gl.device, views_, views_.size());
+}
+
+Result<void> TreeLighting::make_tree(Frame& frame) {
+    if (tree_of_ == cuts_.light) return {};
+    const TimedPass pass(frame, "surfel tree");
+    tree_of_.reset();
+    light_of_.reset();
+    LUCARNE_TRY(lit_.set_surfels(frame));
+    LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));
+    tree_of_ = cuts_.light;
+    return {};
+}
+
+Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& settings) {
+    Basis basis{scene_, cuts_, {}, settings.sky ? frame.index : 0};
+    for (const LightView& view : views_) basis.lights.push_back(view.light);
+    if (light_of_ == basis) return {};
+    light_of_.reset();
+    {
+        const TimedPass pass(frame, "surfel light");
+        LUCARNE_TRY(lit_.set_light(frame, views_, light_gbuffers_));
+    }
+    const TimedPass pass(frame, "radiosity");
+    if (settings.bounces > 0 || settings.sky) radiosity_.choose_places(lit_, frame.settings[kRadiosityLevel]);
+    std::vector<SideLight> light, slots;
+    LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
+    if (frame.stopped()) return {};
+    pull_light(lit_.tree(), light, slots);
+    LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
+    light_of_ = std::move(basis);
+    return {};
+}
+
+Result<void> TreeLighting::add_direct(Frame& frame) {
+    const TimedPass pass(frame, "direct light");
+    LUCARNE_TRY(add_own_light(frame, materials_, background_, true));
+    for (const LightView& view : views_) {
+        LUCARNE_ASSIGN(const GBuffer* seen, light_gbuffers_.look(frame.gl.device, view));
+        LUCARNE_TRY(add_light(frame, materials_, view, *seen));
+    }
+    return {};
+}
+
+}  // namespace lucarne::gi

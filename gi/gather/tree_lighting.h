@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "gi/changes.h"
+#include "gi/gather/gatherer.h"
+#include "gi/gather/lit_tree.h"
+#include "gi/gather/radiosity.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_gbuffers.h"
+
+namespace lucarne::gi {
+
+/// What engines that gather share: the tree of the light cut, its light, and the light of the lights. Kept as
+/// long as nothing but the camera changes. Lights shine by their views. The sky shines where micro-buffers
+/// are empty; only what is much brighter than the rest of it gets views as well.
+class TreeLighting {
+ public:
+    void update(const Changes& changes);
+    /// Opens OpenCL and sends materials and sky to the devices. `engine` names who asks. Errors: cuts are
+    /// missing, no OpenCL, device memory.
+    Result<void> prepare(Frame& frame, std::string_view engine);
+    /// Chooses the views of the lights. Call first in every frame.
+    void begin(Frame& frame);
+    /// Brings the tree up to date. Errors: a device failed.
+    Result<void> make_tree(Frame& frame);
+    /// Brings the light that surfels send out up to date, after so many reflections (`settings`, whose seed
+    /// may differ from frame to frame), and gives it to the gatherer. Errors: a device failed.
+    Result<void> make_light(Frame& frame, const Radiosity::Settings& settings);
+    /// Adds emission, background and the first reflection of the lights to the picture; the even part of the
+    /// sky is left out. Errors: a device failed.
+    Result<void> add_direct(Frame& frame);
+
+    /// Whether micro-buffers see light where they are empty.
+    bool has_sky() const { return !sky_.texels.empty(); }
+    ClDevice& opencl() { return *opencl_; }
+    Gatherer& gatherer() { return gatherer_; }
+    const LitTree& lit() const { return lit_; }
+    const Radiosity& radiosity() const { return radiosity_; }
+
+ private:
+    /// What the light of the tree depends on.
+    struct Basis {
+        SceneRevisions scene;
+        LightCutRevisions cuts;
+        std::vector<Light> lights;  ///< of the views: samples of lights with a size differ in every frame
+        uint64_t frame = 0;         ///< under a sky, which every frame samples anew
+        bool operator==(const Basis&) const = default;
+    };
+
+    ClDevice* opencl_ = nullptr;  ///< of the frame's device
+    Gatherer gatherer_;
+    Buffer materials_;
+    Sky background_;
+    GatherSky sky_;
+    SkyDirections bright_;
+    std::vector<LightView> views_;
+    LightGBuffers light_gbuffers_;
+    LitTree lit_;
+    Radiosity radiosity_;
+    SceneRevisions scene_;  ///< of the frame that is drawn
+    LightCutRevisions cuts_;
+    std::optional<uint64_t> sky_of_;   ///< revision of the environment that the sky is made from
+    std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
+    std::optional<Basis> light_of_;
+};
+
+}  // namespace lucarne::gi
