@@ -144,10 +144,10 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         top = push(go, child, stack, top);
         if (!any(drawn)) continue;
         float8 nearer = rsqrt(distance2);
-        int8 thick = (thickness > bound * kThickNode) & (child >= 0);
-        nx = select(nx, dx * nearer, thick);
-        ny = select(ny, dy * nearer, thick);
-        nz = select(nz, dz * nearer, thick);
+        int8 cloud = fill < 0.0f;
+        nx = select(nx, dx * nearer, cloud);
+        ny = select(ny, dy * nearer, cloud);
+        nz = select(nz, dz * nearer, cloud);
         // Directions to a disc differ from that to its middle by at most 2 sin(asin(s) / 2) < s (1 + .42 s^2).
         float8 s = bound * nearer;
         float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * pixels + 0.5f;
@@ -171,7 +171,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
             if (!draws[k]) continue;
             uint slot = (uint)(at * 8 + k);
             int first = (int)left[k], last = (int)right[k], end = (int)lower[k];
-            float radius2 = node->bound[k] * node->bound[k], part = node->fill[k];
+            float radius2 = node->bound[k] * node->bound[k], part = fabs(node->fill[k]);
             float low_x = node->low_x[k], low_y = node->low_y[k], low_z = node->low_z[k];
             float high_x = node->high_x[k], high_y = node->high_y[k], high_z = node->high_z[k];
             for (int j = (int)upper[k]; j <= end; ++j)

@@ -15,9 +15,9 @@ namespace lucarne::gi {
 namespace {
 
 constexpr size_t kSurfelsATask = 16384;
-/// Thick nodes hold surfaces of several directions; they are divided until they are this much smaller than
-/// flat ones.
-constexpr float kThickShare = 0.25f;
+/// A node is thick over this share of its bound. Its surfels see different things, so it is divided until it
+/// is this much smaller than flat ones.
+constexpr float kThickPlace = 0.25f, kThickShare = 0.25f;
 
 /// Calls visit(slot) for the highest slots that are no larger than `size`; stops once there were more than
 /// `most`. Returns their number.
@@ -32,7 +32,7 @@ size_t for_each_slot(const SurfelTree& tree, float size, size_t most, const Visi
         for (uint32_t k = 0; k < 8; ++k) {
             if (node.child[k] == kNoChild) continue;
             const float bound = node.bound[k];
-            const bool flat = node.thickness[k] <= kThickNode * bound;
+            const bool flat = node.thickness[k] <= kThickPlace * bound;
             if (node.child[k] == kLeafChild || bound <= (flat ? size : kThickShare * size)) {
                 ++found;
                 visit(8 * at + k);

@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "gi/shared/brdf.h"
 #include "gi/shared/disc.h"
@@ -26,9 +27,9 @@ constexpr size_t kGrain = 1024;  // nodes or surfels that one task processes
 constexpr float kThinnest = 0.002f;
 /// A flat node is drawn whole if its surfels cover nearly all of it; else it has holes, or the end of its
 /// surface. Where points are not even, shares of few of them vary.
-constexpr float kFilled = 0.92f, kUneven = 1.5f;
-/// The part of their area that surfels of many directions show to one, on average.
-constexpr float kShown = 0.8f;
+constexpr float kFilled = 0.92f, kUneven = 0.4f;
+/// A node is a cloud if its thickness is over this share of its bound, and its normals agree less than this.
+constexpr float kThickCloud = 0.25f, kOneSurface = 0.8f;
 /// Radii of nodes that stand for nothing, so that no arithmetic on empty slots meets a NaN.
 constexpr float kFarAway = 1e18f;
 
@@ -186,13 +187,15 @@ struct Moments {
         return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
                 xz * v.x + yz * v.y + zz * v.z};
     }
+    /// Returns how much the normals agree: 1 if they are parallel, 0 if they point everywhere.
+    float agreement() const { return glm::length(sum) / (xx + yy + zz); }
     /// Returns the mean normal if most normals agree with it, as they do in the corner of a room: the front
     /// is then the inside. Else, as in a wall that was scanned from both sides, returns the axis to which the
     /// normals are closest whichever way they point (power iteration).
     glm::vec3 axis() const {
         constexpr int kIterations = 12;
         constexpr float kAgreement = 0.5f;
-        if (const float agreed = glm::length(sum); agreed > kAgreement * (xx + yy + zz)) return sum / agreed;
+        if (agreement() > kAgreement) return glm::normalize(sum);
         glm::vec3 v = xx >= yy && xx >= zz ? glm::vec3(xx, xy, xz)
                       : yy >= zz           ? glm::vec3(xy, yy, yz)
                                            : glm::vec3(xz, yz, zz);
@@ -221,28 +224,108 @@ Disc disc_of(const FlatSurfel& s) {
 struct Summary {
     glm::vec3 middle{0.0f}, axis{0.0f, 0.0f, 1.0f};
     float bound = 0, thickness = 0, area = 0;
-    Box box;  ///< the bounds of its discs, m
-    /// The share of the box's section with its plane that its surfels cover; 1 if that is nearly all.
-    float fill = 1;
+    Box box;         ///< the bounds of its discs, m
+    float fill = 1;  ///< the share of what is drawn for it that its discs cover
+    bool cloud = false;
 };
 
-/// Returns the area of the section of a box with the plane through a point, m^2: the share of a grid of
-/// points that are in it.
-float section_of(const Box& box, const glm::vec3& point, const glm::vec3& normal) {
-    constexpr int kPoints = 5;  // along each axis
-    const glm::vec3 size = glm::abs(normal), extent = box.high - box.low;
-    const int w = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const int u = (w + 1) % 3, v = (w + 2) % 3;
-    int inside = 0;
-    for (int j = 0; j < kPoints; ++j)
-        for (int i = 0; i < kPoints; ++i) {
-            const float at_u = box.low[u] + extent[u] * (static_cast<float>(i) + 0.5f) / kPoints;
-            const float at_v = box.low[v] + extent[v] * (static_cast<float>(j) + 0.5f) / kPoints;
-            const float at_w =
-                point[w] - ((at_u - point[u]) * normal[u] + (at_v - point[v]) * normal[v]) / normal[w];
-            inside += at_w >= box.low[w] && at_w <= box.high[w];
-        }
-    return extent[u] * extent[v] / size[w] * static_cast<float>(inside) / (kPoints * kPoints);
+/// A grid of points in a rectangle across an axis of the coordinates, and which of them discs cover.
+class Coverage {
+ public:
+    /// `w`: the axis; the points lie in the plane through `origin` with the given normal, whose w is not 0.
+    Coverage(int w, const glm::vec3& low, const glm::vec3& high, const glm::vec3& origin,
+             const glm::vec3& normal)
+        : w_(w), u_((w + 1) % 3), v_((w + 2) % 3), low_(low), origin_(origin), normal_(normal) {
+        cell_ = (high - low) / static_cast<float>(kSide);
+    }
+    glm::vec3 point(int i, int j) const {
+        glm::vec3 p;
+        p[u_] = low_[u_] + cell_[u_] * (static_cast<float>(i) + 0.5f);
+        p[v_] = low_[v_] + cell_[v_] * (static_cast<float>(j) + 0.5f);
+        p[w_] = origin_[w_] -
+                ((p[u_] - origin_[u_]) * normal_[u_] + (p[v_] - origin_[v_]) * normal_[v_]) / normal_[w_];
+        return p;
+    }
+    /// Adds the points that a disc hides from whoever looks along `normal`, or along the axis if the disc
+    /// has its own `normal`.
+    void add(const glm::vec3& middle, float radius, const glm::vec3& normal) {
+        const Range columns = range(u_, middle, radius), rows = range(v_, middle, radius);
+        for (int j = rows.first; j < rows.last; ++j)
+            for (int i = columns.first; i < columns.last; ++i) {
+                glm::vec3 away = point(i, j) - middle;
+                away[w_] = -(away[u_] * normal[u_] + away[v_] * normal[v_]) / normal[w_];
+                if (glm::dot(away, away) <= radius * radius) covered_ |= uint64_t{1} << (kSide * j + i);
+            }
+    }
+    /// Returns the share of those points for which inside(point) is true that are covered.
+    template <class Inside>
+    float share(const Inside& inside) const {
+        int all = 0, hidden = 0;
+        for (int j = 0; j < kSide; ++j)
+            for (int i = 0; i < kSide; ++i)
+                if (inside(point(i, j))) {
+                    ++all;
+                    hidden += (covered_ >> (kSide * j + i) & 1) != 0;
+                }
+        return all > 0 ? static_cast<float>(hidden) / static_cast<float>(all) : 1;
+    }
+
+ private:
+    static constexpr int kSide = 8;
+    struct Range {
+        int first, last;
+    };
+    Range range(int axis, const glm::vec3& middle, float radius) const {
+        if (!(cell_[axis] > 0)) return {0, kSide};
+        const auto place = [&](float at) {
+            return static_cast<int>(std::clamp((at - low_[axis]) / cell_[axis] + 0.5f, 0.0f, 1.0f * kSide));
+        };
+        return {place(middle[axis] - radius), place(middle[axis] + radius)};
+    }
+
+    int w_, u_, v_;
+    glm::vec3 low_, origin_, normal_, cell_;
+    uint64_t covered_ = 0;
+};
+
+int largest_of(const glm::vec3& v) {
+    const glm::vec3 size = glm::abs(v);
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+/// Returns the share of a surface that its discs hide; 1 if it has no holes and no end within `squares`.
+float flat_fill(std::span<const Disc> discs, const Summary& node, const Box& squares) {
+    const glm::vec3 room = node.thickness * glm::abs(node.axis);
+    const auto within = [&](const Box& box) {
+        return [&](const glm::vec3& p) {
+            return glm::all(glm::greaterThanEqual(p, box.low - room)) &&
+                   glm::all(glm::lessThanEqual(p, box.high + room));
+        };
+    };
+    Coverage coverage(largest_of(node.axis), node.box.low - room, node.box.high + room, node.middle,
+                      node.axis);
+    for (const Disc& disc : discs) {
+        const glm::vec3 offset = disc.middle - node.middle;
+        coverage.add(disc.middle - node.axis * glm::dot(offset, node.axis), disc.radius, node.axis);
+    }
+    const float uneven = kUneven / std::sqrt(static_cast<float>(discs.size()));
+    return coverage.share(within(squares)) < kFilled - uneven ? coverage.share(within(node.box)) : 1;
+}
+
+/// Returns the share of its sphere that a cloud hides, the mean of three directions.
+float cloud_fill(std::span<const Disc> discs, const Summary& node) {
+    constexpr float kEdgeOn = 1e-3f;
+    float sum = 0;
+    for (int w = 0; w < 3; ++w) {
+        glm::vec3 normal(0.0f);
+        normal[w] = 1;
+        Coverage coverage(w, node.middle - node.bound, node.middle + node.bound, node.middle, normal);
+        for (const Disc& disc : discs)
+            if (std::abs(disc.normal[w]) > kEdgeOn) coverage.add(disc.middle, disc.radius, disc.normal);
+        sum +=
+            coverage.share([&](const glm::vec3& p) { return glm::distance(p, node.middle) <= node.bound; });
+    }
+    return sum / 3;
 }
 
 Summary summary_of(std::span<const Disc> discs) {
@@ -270,10 +353,8 @@ Summary summary_of(std::span<const Disc> discs) {
         sum.thickness = std::max(sum.thickness, std::abs(glm::dot(offset, sum.axis)) +
                                                     disc_reach(disc.radius, glm::dot(disc.normal, sum.axis)));
     }
-    const glm::vec3 room = sum.thickness * glm::abs(sum.axis);
-    const float section = section_of({squares.low - room, squares.high + room}, sum.middle, sum.axis);
-    const float fill = section > 0 ? sum.area / section : 1;
-    sum.fill = fill < kFilled - kUneven / std::sqrt(static_cast<float>(discs.size())) ? fill : 1;
+    sum.cloud = sum.thickness > kThickCloud * sum.bound && moments.agreement() < kOneSurface;
+    if (discs.size() > 1) sum.fill = sum.cloud ? cloud_fill(discs, sum) : flat_fill(discs, sum, squares);
     return sum;
 }
 
@@ -281,11 +362,9 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.x[k] = s.middle.x, node.y[k] = s.middle.y, node.z[k] = s.middle.z;
     node.nx[k] = s.axis.x, node.ny[k] = s.axis.y, node.nz[k] = s.axis.z;
     node.bound[k] = s.bound, node.thickness[k] = s.thickness;
-    const bool thick = s.thickness > kThickNode * s.bound;
-    const float shown = thick ? kShown * s.area / (kPi * s.bound * s.bound) : s.fill;
-    node.fill[k] = leaf ? 1 : std::min(shown, 1.0f);
+    node.fill[k] = s.cloud ? -s.fill : s.fill;
     glm::vec3 low(-kFarAway), high(kFarAway);
-    if (!leaf && !thick) {
+    if (!leaf && !s.cloud) {
         // All discs shall be within the box if they are moved into the plane.
         const glm::vec3 margin = (s.thickness + kThinnest * s.bound) * glm::abs(s.axis);
         low = s.box.low - s.middle - margin;

@@ -10,23 +10,21 @@ namespace lucarne::gi {
 
 LUCARNE_CONST int kLeafChild = -1;  // the child is one surfel
 LUCARNE_CONST int kNoChild = -2;
-// A node is thick, and has no plane, if its thickness is over this share of its bound.
-LUCARNE_CONST float kThickNode = 0.25f;
 
 // Eight children, each property in a row of its own, so that one vector load reads it for all of them. A
 // "slot" is 8 * node + place of the child.
 //
 // Where a child is small it is drawn as a piece of the plane through its middle: what lies in the sphere and
-// in the box about it. A surfel is its disc. A flat node is cut by its box, the bounds of its discs, so that
-// nodes of one wall overlap and its ends are not beyond those of its discs. A node of several directions has
-// no plane: its disc faces whoever looks. Such nodes, and those with holes, are drawn with the probability
-// `fill`.
+// in the box about it. A surfel is its disc. A node of one surface is cut by its box, the bounds of its
+// discs, so that nodes of one wall overlap and its ends are not beyond those of its discs. A cloud, a node of
+// several directions, has no plane: its disc faces whoever looks. Clouds, and surfaces with holes, are drawn
+// with the probability `fill`.
 LUCARNE_STRUCT(WideNode) {
     float x[8], y[8], z[8];     // middle of the child, m
     float bound[8];             // radius of the sphere about the middle that holds all discs of the child, m
     float nx[8], ny[8], nz[8];  // unit axis: a surfel's normal, or the direction that most normals share
     float thickness[8];         // no disc is farther from the plane through the middle, m
-    float fill[8];              // share of what is drawn that its discs cover, up to 1
+    float fill[8];              // share of what is drawn that its discs cover, up to 1; negative: of a cloud
     float low_x[8], low_y[8], low_z[8], high_x[8], high_y[8], high_z[8];  // the box, from the middle, m
     int child[8];  // number of a node, or one of the constants above
 };
