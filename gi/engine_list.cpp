@@ -2,6 +2,7 @@
 #include <array>
 
 #include "gi/engines/direct/direct.h"
+#include "gi/engines/environment/environment.h"
 #include "gi/engines/micro/micro.h"
 #include "gi/engines/reference/reference.h"
 #include "gi/engines/unlit/unlit.h"
@@ -11,8 +12,8 @@
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array all = {direct_engine(), vpl_engine(), micro_engine(), reference_engine(),
-                                   unlit_engine()};
+    static const std::array all = {direct_engine(),      vpl_engine(),       micro_engine(),
+                                   environment_engine(), reference_engine(), unlit_engine()};
     return all;
 }
 

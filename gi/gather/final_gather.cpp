@@ -135,32 +135,40 @@ class LobeGather {
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
                                              Gathered what, GatherCounts& counts) {
     auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    std::vector<glm::vec4> light;
+    LobeGather gather(frame, device, gatherer, what, counts);
+    LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, {}, light));
+    if (frame.stopped()) return light;
+    LUCARNE_TRY(reflect(frame, device, gatherer, what, std::move(surfaces), light, counts));
+    return light;
+}
+
+Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
+                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light,
+                     GatherCounts& counts) {
     const std::vector<Material> materials = device_materials(frame.materials);
     std::vector<Reflectance> reflectances(surfaces.size());
     parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
+        for (size_t i = first; i < last; ++i) {
             reflectances[i] =
                 make_reflectance(materials[surfaces[i].material % materials.size()], surfaces[i].albedo);
+            light[i] = glm::vec4(reflectances[i].kd * glm::vec3(light[i]), 0);
+        }
     });
-    counts = {};
-    LobeGather gather(frame, device, gatherer, what, counts);
-    std::vector<glm::vec4> light, lobe;
-    LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, reflectances, light));
-    if (frame.stopped()) return light;
-    for (size_t i = 0; i < light.size(); ++i)
-        light[i] = glm::vec4(reflectances[i].kd * glm::vec3(light[i]), 0);
-    if (!glossy(frame)) return light;
+    if (!glossy(frame)) return {};
     for (size_t i = 0; i < surfaces.size(); ++i)
         if (!(reflectances[i].ks > 0)) surfaces[i].radius = 0;
+    std::vector<glm::vec4> lobe;
+    LobeGather gather(frame, device, gatherer, what, counts);
     LUCARNE_TRY(gather.run(Lobe::specular, surfaces, reflectances, lobe));
-    if (frame.stopped()) return light;
+    if (frame.stopped()) return {};
     for (size_t i = 0; i < light.size(); ++i) {
         const Reflectance& r = reflectances[i];
         if (!(surfaces[i].radius > 0)) continue;
         const float scale2 = 1 - std::pow(kLobeEnd, 2 / r.exponent);
         light[i] += r.ks * (r.exponent + 2) / 2 * scale2 * glm::vec4(glm::vec3(lobe[i]), 0);
     }
-    return light;
+    return {};
 }
 
 }  // namespace lucarne::gi

@@ -21,4 +21,9 @@ struct GatherCounts {
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
                                              Gathered what, GatherCounts& counts);
 
+/// Turns the mean radiance that each pixel receives (`light`) into what it reflects, W/(sr m^2). Specular
+/// lobes gather by micro-buffers of their own, as above. Errors likewise.
+Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
+                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light, GatherCounts& counts);
+
 }  // namespace lucarne::gi

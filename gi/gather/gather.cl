@@ -217,6 +217,69 @@ uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float
     return away <= allowed ? other : slot;
 }
 
+// A micro-buffer's place: its start, the axes of its picture, and its set of rays, x and y of all pixels in the unit
+// disc; x is over 1 where a pixel has no ray.
+typedef struct {
+    float3 position, normal, start, side, across, axis;
+    float scale;
+    global const float* set;
+} Place;
+
+// `rays`: sets of x and y of all pixels.
+Place place_of(global const WideNode* nodes, GatherPoint point, global const float* rays, uint sets) {
+    Place place;
+    place.position = (float3)(point.position.x, point.position.y, point.position.z);
+    place.normal = (float3)(point.normal.x, point.normal.y, point.normal.z);
+    place.start = start_of(nodes, point);
+    place.axis = (float3)(point.axis.x, point.axis.y, point.axis.z);
+    place.scale = point.scale;
+    float3 axis = place.axis;
+    float angle = 6.28318531f * fractions_of(point.seed).s0;
+    float3 u = normalize(cross(fabs(axis.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), axis));
+    place.side = cos(angle) * u + sin(angle) * cross(axis, u);
+    place.across = cross(axis, place.side);
+    place.set = rays + (point.seed % sets) * (2 * PIXELS);
+    return place;
+}
+
+// Returns the ray of a pixel along the axes of the picture.
+float3 ray_of(Place place, int pixel) {
+    float x = place.set[pixel] * place.scale, y = place.set[PIXELS + pixel] * place.scale;
+    return (float3)(x, y, sqrt(fmax(1.0f - x * x - y * y, 0.0f)));
+}
+
+// Sets the directions of all pixels, zero where there is none above the surface, and an empty picture.
+void clear(Place place, float* directions, float* depths, uint* slots) {
+    for (int i = 0; i < PIXELS; i += 8) {
+        float8 x = vload8(0, place.set + i), y = vload8(0, place.set + PIXELS + i);
+        int8 none = x > 1.0f;
+        x *= place.scale;
+        y *= place.scale;
+        float8 z = sqrt(fmax(1.0f - x * x - y * y, 0.0f));
+        float8 dx = place.side.x * x + place.across.x * y + place.axis.x * z;
+        float8 dy = place.side.y * x + place.across.y * y + place.axis.y * z;
+        float8 dz = place.side.z * x + place.across.z * y + place.axis.z * z;
+        none |= dx * place.normal.x + dy * place.normal.y + dz * place.normal.z <= 0.0f;
+        vstore8(select(dx, (float8)(0.0f), none), 0, directions + i);
+        vstore8(select(dy, (float8)(0.0f), none), 0, directions + PIXELS + i);
+        vstore8(select(dz, (float8)(0.0f), none), 0, directions + 2 * PIXELS + i);
+        vstore8((float8)(NOTHING), 0, depths + i);
+        vstore8((uint8)(EMPTY), 0, slots + i);
+    }
+}
+
+// Returns the side that a pixel sees, twice the slot and one more for the back, if it sees any.
+uint seen_side(global const WideNode* nodes, Place place, const uint* slots, const float* depths, int pixel,
+               float3 ray, float3 direction, float lift) {
+    float3 away = place.start - place.position;
+    float3 lifted = (float3)(dot(away, place.side), dot(away, place.across), dot(away, place.axis));
+    uint slot = seen_slot(nodes, slots, slots[pixel], depths[pixel], ray, direction, lifted, place.position, lift,
+                          place.scale);
+    // The start sees the side of the plane on which it is.
+    uint back = dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - place.start) < 0.0f ? 0u : 1u;
+    return 2 * slot + back;
+}
+
 float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction) {
     vec2 place = environment_place(direction, sky.rotation);
     uint x = min((uint)(place.x * sky.width), sky.width - 1u), y = min((uint)(place.y * sky.height), sky.height - 1u);
@@ -224,70 +287,115 @@ float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction
 }
 
 // For each point: the mean radiance of its rays, W/(sr m^2) (times pi: irradiance), and the share of rays that meet
-// nothing. `light`: six floats a slot, the radiance of its front and of its back; zero: `nodes` only block. `sky`
-// shines where there is nothing; without texels it is dark. `rays`: sets of x and y of all pixels, in the unit disc; x
-// is over 1 where a pixel has no ray.
+// nothing. `light`: six floats a slot, the radiance of its front and of its back; lit = 0: `nodes` only block. `sky`
+// shines where there is nothing; without texels it is dark.
 kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* sky_texels,
                    SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
                    global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
     GatherPoint point = points[number];
-    float3 position = (float3)(point.position.x, point.position.y, point.position.z);
-    float3 normal = (float3)(point.normal.x, point.normal.y, point.normal.z);
-    float3 start = start_of(nodes, point);
-    float3 axis = (float3)(point.axis.x, point.axis.y, point.axis.z);
-    float scale = point.scale;
-    float angle = 6.28318531f * fractions_of(point.seed).s0;
-    float3 u = normalize(cross(fabs(axis.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), axis));
-    float3 v = cross(axis, u);
-    float3 side = cos(angle) * u + sin(angle) * v, across = cross(axis, side);
-    global const float* set = rays + (point.seed % sets) * (2 * PIXELS);
-
+    Place place = place_of(nodes, point, rays, sets);
     float depths[PIXELS], directions[3 * PIXELS];
     uint slots[PIXELS];
-    for (int i = 0; i < PIXELS; i += 8) {
-        float8 x = vload8(0, set + i), y = vload8(0, set + PIXELS + i);
-        int8 none = x > 1.0f;
-        x *= scale;
-        y *= scale;
-        float8 z = sqrt(fmax(1.0f - x * x - y * y, 0.0f));
-        float8 dx = side.x * x + across.x * y + axis.x * z, dy = side.y * x + across.y * y + axis.y * z;
-        float8 dz = side.z * x + across.z * y + axis.z * z;
-        none |= dx * normal.x + dy * normal.y + dz * normal.z <= 0.0f;
-        vstore8(select(dx, (float8)(0.0f), none), 0, directions + i);
-        vstore8(select(dy, (float8)(0.0f), none), 0, directions + PIXELS + i);
-        vstore8(select(dz, (float8)(0.0f), none), 0, directions + 2 * PIXELS + i);
-        vstore8((float8)(NOTHING), 0, depths + i);
-        vstore8((uint8)(EMPTY), 0, slots + i);
-    }
-    draw(nodes, directions, start, side, across, axis, normal, scale, point.seed, depths, slots);
+    clear(place, directions, depths, slots);
+    draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, point.seed,
+         depths, slots);
 
-    float3 away = start - position, sum = (float3)(0.0f);
-    float3 lifted = (float3)(dot(away, side), dot(away, across), dot(away, axis));
+    float3 sum = (float3)(0.0f);
     uint cast = 0, empty = 0;
     for (int j = 0; j < GRID; ++j)
         for (int i = 0; i < GRID; ++i) {
             int pixel = j * ROW + i;
-            if (set[pixel] > 1.0f) continue;
+            if (place.set[pixel] > 1.0f) continue;
             ++cast;
             float3 direction = (float3)(directions[pixel], directions[PIXELS + pixel], directions[2 * PIXELS + pixel]);
-            float height = dot(direction, normal);
+            float height = dot(direction, place.normal);
             if (!(height > 0.0f)) continue;
-            uint slot = slots[pixel];
-            float x = set[pixel] * scale, y = set[PIXELS + pixel] * scale;
-            float3 ray = (float3)(x, y, sqrt(fmax(1.0f - x * x - y * y, 0.0f)));
+            float3 ray = ray_of(place, pixel);
             float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
-            if (slot == EMPTY) {
+            if (slots[pixel] == EMPTY) {
                 ++empty;
                 if (sky.width > 0) sum += weight * sky_radiance(sky_texels, sky, direction);
-                continue;
+            } else if (lit) {
+                uint side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift);
+                sum += weight * vload3(side, light);
             }
-            if (!lit) continue;
-            slot = seen_slot(nodes, slots, slot, depths[pixel], ray, direction, lifted, position, point.lift, scale);
-            // The start sees the side of the plane on which it is.
-            uint back = dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - start) < 0.0f ? 0u : 1u;
-            sum += weight * vload3(2 * slot + back, light);
         }
     results[number] = (float4)(sum / cast, (float)(empty) / cast);
+}
+
+// Sets what each pixel of the buffers of `count` points from `first` on sees: a side (seen_side), kSeesSky or
+// kSeesNothing, GRID * GRID for each point; and the mean of 1 over the distance, 1/m.
+kernel void see(global const WideNode* nodes, global const GatherPoint* points, global const float* rays, uint sets,
+                uint first, uint count, global uint* seen, global float* nearness) {
+    uint number = get_global_id(0);
+    if (number >= count) return;
+    number += first;
+    GatherPoint point = points[number];
+    Place place = place_of(nodes, point, rays, sets);
+    float depths[PIXELS], directions[3 * PIXELS];
+    uint slots[PIXELS];
+    clear(place, directions, depths, slots);
+    draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, point.seed,
+         depths, slots);
+
+    global uint* sees = seen + number * (uint)(GRID * GRID);
+    float near = 0.0f;
+    uint cast = 0;
+    for (int j = 0; j < GRID; ++j)
+        for (int i = 0; i < GRID; ++i) {
+            int pixel = j * ROW + i;
+            float3 direction = (float3)(directions[pixel], directions[PIXELS + pixel], directions[2 * PIXELS + pixel]);
+            uint code = kSeesNothing;
+            if (place.set[pixel] <= 1.0f && dot(direction, place.normal) > 0.0f) {
+                ++cast;
+                code = kSeesSky;
+                if (slots[pixel] != EMPTY) {
+                    near += 1.0f / fmax(depths[pixel], 1e-6f);
+                    code = seen_side(nodes, place, slots, depths, pixel, ray_of(place, pixel), direction, point.lift);
+                }
+            }
+            sees[j * GRID + i] = code;
+        }
+    nearness[number] = cast > 0 ? near / cast : 0.0f;
+}
+
+// For each point: the light that it receives by what its buffer sees, as three vectors, for red, green and blue. The
+// product of a vector and a unit normal near the point's is the mean radiance for that normal, W/(sr m^2) (times pi:
+// irradiance). Arguments as above.
+kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* sky_texels,
+                  SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
+                  global const uint* seen, global float4* results) {
+    uint number = get_global_id(0);
+    if (number >= count) return;
+    GatherPoint point = points[number];
+    point.viewer.x = point.viewer.y = point.viewer.z = 0.0f;  // the start of the rays does not matter any more
+    Place place = place_of(nodes, point, rays, sets);
+    float3 red = (float3)(0.0f), green = (float3)(0.0f), blue = (float3)(0.0f);
+    uint cast = 0;
+    for (int j = 0; j < GRID; ++j)
+        for (int i = 0; i < GRID; ++i) {
+            uint code = seen[number * (uint)(GRID * GRID) + (uint)(j * GRID + i)];
+            if (code == kSeesNothing) continue;
+            ++cast;
+            float3 ray = ray_of(place, j * ROW + i);
+            float3 direction = place.side * ray.x + place.across * ray.y + place.axis * ray.z;
+            float3 radiance = (float3)(0.0f);
+            if (code != kSeesSky) {
+                if (lit) radiance = vload3(code, light);
+            } else if (sky.width > 0) {
+                radiance = sky_radiance(sky_texels, sky, direction);
+            }
+            // Rays are drawn by the cosine. Of the part along the surface, which grows beyond bounds at the horizon,
+            // the last few degrees are left out.
+            float3 part = place.axis + (direction - ray.z * place.axis) / fmax(ray.z, 0.1f);
+            red += radiance.x * part;
+            green += radiance.y * part;
+            blue += radiance.z * part;
+        }
+    float share = cast > 0 ? 1.0f / cast : 0.0f;
+    results[3 * number] = (float4)(red * share, 0.0f);
+    results[3 * number + 1] = (float4)(green * share, 0.0f);
+    results[3 * number + 2] = (float4)(blue * share, 0.0f);
 }

@@ -18,9 +18,13 @@ LUCARNE_STRUCT(GatherPoint) {
     LUCARNE_VEC3 axis;      // unit, the middle of the micro-buffer: the normal, or the mirror direction
     float scale;            // sine of the largest angle to the axis: 1 for a half space
 };
-    // A point with an exponent n gathers for a specular lobe about its axis: light from the direction w
-    // counts (w . axis)^(n - 1) (w . normal). Rays are drawn with the density (w . axis) / (pi scale^2), so
-    // the lobe ks (n + 2) / (2 pi) (w . axis)^n reflects ks (n + 2) / 2 scale^2 times the mean.
+// A point with an exponent n gathers for a specular lobe about its axis: light from the direction w
+// counts (w . axis)^(n - 1) (w . normal). Rays are drawn with the density (w . axis) / (pi scale^2), so
+// the lobe ks (n + 2) / (2 pi) (w . axis)^n reflects ks (n + 2) / 2 scale^2 times the mean.
+
+// What a pixel of a micro-buffer sees, if it is no side of a slot.
+LUCARNE_CONST uint kSeesNothing = 0xffffffffu;  // it has no ray
+LUCARNE_CONST uint kSeesSky = 0xfffffffeu;
 
 #ifdef __cplusplus
 static_assert(sizeof(GatherPoint) == 64);

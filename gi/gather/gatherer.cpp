@@ -10,6 +10,7 @@
 namespace lucarne::gi {
 namespace {
 
+constexpr const char* kSource = "gi/gather/gather.cl";
 constexpr uint32_t kSets = 32;     // of rays; points choose among them
 constexpr float kNoRay = 2;        // as x
 constexpr double kRim = 1 - 1e-6;  // rays in the plane of the surface would meet it
@@ -30,7 +31,23 @@ uint32_t row_for(uint32_t grid) {
     return (grid + 14) / 8 * 8;
 }
 
+Defines defines_for(uint32_t grid) {
+    return {{"LUCARNE_GRID", fmt::format("{}", grid)}, {"LUCARNE_ROW", fmt::format("{}", row_for(grid))}};
+}
+
 }  // namespace
+
+Result<std::vector<uint32_t>> MicroBuffers::seen() const {
+    std::vector<uint32_t> result(count_ * grid_ * grid_);
+    if (count_ > 0) LUCARNE_TRY(seen_.download(0, std::as_writable_bytes(std::span(result))));
+    return result;
+}
+
+Result<std::vector<float>> MicroBuffers::nearness() const {
+    std::vector<float> result(count_);
+    if (count_ > 0) LUCARNE_TRY(nearness_.download(0, std::as_writable_bytes(std::span(result))));
+    return result;
+}
 
 Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
     empty_ = tree.empty();
@@ -81,13 +98,10 @@ Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed)
 Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points,
                               uint32_t side, uint64_t seed, std::span<glm::vec4> results,
                               const std::atomic<bool>* stop, const std::function<void(size_t)>& done) {
-    const uint32_t lit = what != Gathered::sky && !empty_;
-    const SkyPicture sky = what != Gathered::light_of_surfels ? sky_ : SkyPicture{};
+    const auto [lit, sky] = asked(what);
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
-    const Defines defines = {{"LUCARNE_GRID", fmt::format("{}", grid)},
-                             {"LUCARNE_ROW", fmt::format("{}", row_for(grid))}};
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel("gi/gather/gather.cl", "gather", defines));
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid)));
     const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
     const size_t most = std::min(points.size(), launch.points);
     LUCARNE_TRY(device.reserve(points_, most * sizeof(GatherPoint), "gather points"));
@@ -103,6 +117,53 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
         if (done) done(first + count);
     }
     return {};
+}
+
+Gatherer::Asked Gatherer::asked(Gathered what) const {
+    return {what != Gathered::sky && !empty_, what != Gathered::light_of_surfels ? sky_ : SkyPicture{}};
+}
+
+Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points, uint32_t side,
+                           uint64_t seed, MicroBuffers& buffers, const std::atomic<bool>* stop) {
+    const uint32_t grid = grid_for(side);
+    buffers.count_ = 0;
+    if (points.empty()) return {};
+    LUCARNE_TRY(make_rays(device, grid, seed));
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "see", defines_for(grid)));
+    const size_t count = points.size(), pixels = size_t{grid} * grid;
+    LUCARNE_TRY(device.reserve(buffers.points_, count * sizeof(GatherPoint), "gather points"));
+    LUCARNE_TRY(device.reserve(buffers.seen_, count * pixels * sizeof(uint32_t), "micro-buffers"));
+    LUCARNE_TRY(device.reserve(buffers.nearness_, count * sizeof(float), "distances"));
+    LUCARNE_TRY(buffers.points_.upload(0, std::as_bytes(points)));
+    const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
+    for (size_t first = 0; first < count; first += launch.points) {
+        if (stop && *stop) return {};
+        const size_t some = std::min(launch.points, count - first);
+        LUCARNE_TRY(kernel->run(ClRange(some, launch.group), nodes_, buffers.points_, rays_, kSets,
+                                static_cast<uint32_t>(first), static_cast<uint32_t>(some), buffers.seen_,
+                                buffers.nearness_));
+        if (stop) LUCARNE_TRY(device.finish());
+    }
+    buffers.count_ = count;
+    buffers.grid_ = grid;
+    buffers.seed_ = seed;
+    return {};
+}
+
+Result<std::vector<LightVectors>> Gatherer::shade(ClDevice& device, Gathered what,
+                                                  const MicroBuffers& buffers) {
+    std::vector<LightVectors> result(buffers.count());
+    if (result.empty()) return result;
+    const auto [lit, sky] = asked(what);
+    LUCARNE_TRY(make_rays(device, buffers.grid_, buffers.seed_));
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "shade", defines_for(buffers.grid_)));
+    LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightVectors), "gathered light"));
+    const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
+    LUCARNE_TRY(kernel->run(ClRange(result.size(), launch.group), nodes_, lit ? light_ : nodes_, lit,
+                            sky.width > 0 ? sky_texels_ : nodes_, sky, buffers.points_, rays_, kSets,
+                            static_cast<uint32_t>(result.size()), buffers.seen_, results_));
+    LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(result))));
+    return result;
 }
 
 }  // namespace lucarne::gi

@@ -6,6 +6,9 @@
 #include <span>
 #include <vector>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "gi/device/cl/cl_device.h"
@@ -18,6 +21,35 @@ namespace lucarne::gi {
 
 /// Which light points gather.
 enum class Gathered : uint8_t { light_of_surfels, sky, both };
+
+/// Light that a point receives, for normals near its own: the product of a vector and a unit normal is the
+/// mean radiance, W/(sr m^2) (times pi: irradiance).
+struct LightVectors {
+    glm::vec4 red, green, blue;  ///< w is unused
+    glm::vec3 on(const glm::vec3& normal) const {
+        return glm::max(glm::vec3(glm::dot(glm::vec3(red), normal), glm::dot(glm::vec3(green), normal),
+                                  glm::dot(glm::vec3(blue), normal)),
+                        0.0f);
+    }
+};
+
+/// Micro-buffers that stay on an OpenCL device, to be lit as often as the light changes.
+class MicroBuffers {
+ public:
+    size_t count() const { return count_; }
+    /// Returns what the pixels of all buffers see (gather_point.h), in order of the points. Errors: the
+    /// device failed.
+    Result<std::vector<uint32_t>> seen() const;
+    /// Returns for each point the mean of 1 over the distance of what it sees, 1/m. Errors likewise.
+    Result<std::vector<float>> nearness() const;
+
+ private:
+    friend class Gatherer;
+    ClBuffer points_, seen_, nearness_;
+    size_t count_ = 0;
+    uint32_t grid_ = 0;
+    uint64_t seed_ = 0;
+};
 
 /// Gathers the light of a tree of surfels at points, on an OpenCL device (gather.cl).
 class Gatherer {
@@ -36,8 +68,21 @@ class Gatherer {
     Result<void> gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points, uint32_t side,
                         uint64_t seed, std::span<glm::vec4> results, const std::atomic<bool>* stop = nullptr,
                         const std::function<void(size_t)>& done = {});
+    /// Draws micro-buffers for points that gather evenly from their half spaces, and keeps them in `buffers`.
+    /// Arguments and errors as for gather().
+    Result<void> see(ClDevice& device, std::span<const GatherPoint> points, uint32_t side, uint64_t seed,
+                     MicroBuffers& buffers, const std::atomic<bool>* stop = nullptr);
+    /// Computes the light that reaches the points of `buffers`, which see() has drawn. Errors: the device
+    /// failed.
+    Result<std::vector<LightVectors>> shade(ClDevice& device, Gathered what, const MicroBuffers& buffers);
 
  private:
+    struct Asked {
+        uint32_t lit;
+        SkyPicture sky;
+    };
+    /// Returns what a kernel needs to know of the light that is asked for.
+    Asked asked(Gathered what) const;
     Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);
 
     ClBuffer nodes_, light_, sky_texels_, points_, results_, rays_;

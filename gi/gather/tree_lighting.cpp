@@ -7,8 +7,14 @@
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/light_options.h"
+#include "io/core/parallel.h"
 
 namespace lucarne::gi {
+namespace {
+
+constexpr size_t kSlotsATask = 65536;
+
+}  // namespace
 
 void TreeLighting::update(const Changes& changes) {
     scene_ = changes.scene;
@@ -49,21 +55,46 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
 Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& settings) {
     Basis basis{scene_, cuts_, {}, settings.sky ? frame.index : 0};
     for (const LightView& view : views_) basis.lights.push_back(view.light);
-    if (light_of_ == basis) return {};
+    if (light_of_ == basis) {
+        if (replaced_) LUCARNE_TRY(gatherer_.set_light(*opencl_, slots_));
+        replaced_ = false;
+        return {};
+    }
     light_of_.reset();
+    own_slots_.clear();
     {
         const TimedPass pass(frame, "surfel light");
         LUCARNE_TRY(lit_.set_light(frame, views_, light_gbuffers_));
     }
     const TimedPass pass(frame, "radiosity");
     if (settings.bounces > 0 || settings.sky) radiosity_.choose_places(lit_, frame.settings[kRadiosityLevel]);
-    std::vector<SideLight> light, slots;
+    std::vector<SideLight> light;
     LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
     if (frame.stopped()) return {};
-    pull_light(lit_.tree(), light, slots);
-    LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
+    pull_light(lit_.tree(), light, slots_);
+    LUCARNE_TRY(gatherer_.set_light(*opencl_, slots_));
+    replaced_ = false;
     light_of_ = std::move(basis);
     return {};
+}
+
+Result<void> TreeLighting::set_irradiance(std::span<const glm::vec3> irradiance, bool own) {
+    if (own_slots_.empty()) {
+        pull_light(lit_.tree(), lit_.own_light(), own_slots_);
+        std::vector<SideLight> reflectances;
+        for (const glm::vec3& r : lit_.reflectances()) reflectances.push_back({r, r});
+        pull_light(lit_.tree(), reflectances, reflecting_);
+    }
+    std::vector<SideLight> slots(own_slots_.size());
+    parallel_ranges(slots.size(), kSlotsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            if (own) slots[i] = own_slots_[i];
+            slots[i].front += reflecting_[i].front * irradiance[2 * i];
+            slots[i].back += reflecting_[i].back * irradiance[2 * i + 1];
+        }
+    });
+    replaced_ = true;
+    return gatherer_.set_light(*opencl_, slots);
 }
 
 Result<void> TreeLighting::add_direct(Frame& frame) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +32,10 @@ class TreeLighting {
     /// Brings the light that surfels send out up to date, after so many reflections (`settings`, whose seed
     /// may differ from frame to frame), and gives it to the gatherer. Errors: a device failed.
     Result<void> make_light(Frame& frame, const Radiosity::Settings& settings);
+    /// Gives the gatherer other light: the surfels' own (if `own`), and what slots reflect of this
+    /// irradiance, W/m^2, by side (twice the slot, and one more for the back). make_light() has to come
+    /// first. Errors: a device failed.
+    Result<void> set_irradiance(std::span<const glm::vec3> irradiance, bool own);
     /// Adds emission, background and the first reflection of the lights to the picture; the even part of the
     /// sky is left out. Errors: a device failed.
     Result<void> add_direct(Frame& frame);
@@ -67,6 +72,10 @@ class TreeLighting {
     std::optional<uint64_t> sky_of_;   ///< revision of the environment that the sky is made from
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
+    std::vector<SideLight> slots_;  ///< the light of make_light()
+    bool replaced_ = false;         ///< the gatherer has other light
+    std::vector<SideLight> own_slots_,
+        reflecting_;  ///< the surfels' own light, and their reflectances, pulled
 };
 
 }  // namespace lucarne::gi

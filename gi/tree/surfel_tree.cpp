@@ -33,13 +33,6 @@ constexpr float kThickCloud = 0.25f, kOneSurface = 0.8f;
 /// Radii of nodes that stand for nothing, so that no arithmetic on empty slots meets a NaN.
 constexpr float kFarAway = 1e18f;
 
-glm::vec3 middle_of(const WideNode& node, size_t k) {
-    return {node.x[k], node.y[k], node.z[k]};
-}
-glm::vec3 axis_of(const WideNode& node, size_t k) {
-    return {node.nx[k], node.ny[k], node.nz[k]};
-}
-
 bool has_disc(const FlatSurfel& s) {
     return s.radius > 0 && std::isfinite(s.radius) && (s.albedo & kSurfelHasNormal) != 0 &&
            std::isfinite(s.x) && std::isfinite(s.y) && std::isfinite(s.z);
@@ -412,33 +405,6 @@ void divide_all(SurfelTree& tree, std::span<const CodeIndex> order, std::span<co
     tree.levels.push_back(tree.nodes.size());
 }
 
-/// Calls body(node) for all nodes, the deepest level first.
-template <class Body>
-void for_each_upward(const SurfelTree& tree, const Body& body) {
-    if (tree.empty()) return;
-    for (size_t level = tree.levels.size() - 1; level-- > 0;) {
-        const size_t begin = tree.levels[level], end = tree.levels[level + 1];
-        parallel_ranges(end - begin, kGrain, [&](size_t first, size_t last) {
-            for (size_t i = begin + first; i < begin + last; ++i) body(i);
-        });
-    }
-}
-
-/// Returns how much a child counts on the two sides of its parent's disc, and whether its own front is on
-/// the parent's front.
-struct Facing {
-    float front, back;
-    bool same;
-};
-Facing facing(const WideNode& node, size_t k, float area, const Summary& parent) {
-    const float cosine = glm::dot(axis_of(node, k), parent.axis);
-    const float height = glm::dot(middle_of(node, k) - parent.middle, parent.axis);
-    const float scale = parent.thickness + kThinnest * parent.bound;
-    const float outward = scale > 0 ? std::clamp(height / scale, -1.0f, 1.0f) : 0;
-    const float weight = area * std::abs(cosine);
-    return {weight * (1 + outward), weight * (1 - outward), cosine >= 0};
-}
-
 }  // namespace
 
 WideNode empty_node() {
@@ -463,32 +429,38 @@ SurfelTree build_tree(std::span<const FlatSurfel> surfels) {
     return tree;
 }
 
+Facing facing(const SurfelTree& tree, size_t parent, size_t child) {
+    const WideNode &outer = tree.nodes[parent / 8], &inner = tree.nodes[child / 8];
+    const size_t p = parent % 8, c = child % 8;
+    const glm::vec3 axis = axis_of(outer, p);
+    const float cosine = glm::dot(axis_of(inner, c), axis);
+    const float height = glm::dot(middle_of(inner, c) - middle_of(outer, p), axis);
+    const float scale = outer.thickness[p] + kThinnest * outer.bound[p];
+    const float outward = scale > 0 ? std::clamp(height / scale, -1.0f, 1.0f) : 0;
+    const float weight = tree.areas[child] * std::abs(cosine);
+    return {weight * (1 + outward), weight * (1 - outward), cosine >= 0};
+}
+
 void pull_light(const SurfelTree& tree, std::span<const SideLight> light, std::vector<SideLight>& slots) {
     slots.assign(8 * tree.nodes.size(), {});
     for_each_upward(tree, [&](size_t at) {
         const WideNode& node = tree.nodes[at];
         for (size_t k = 0; k < 8; ++k) {
-            if (node.child[k] == kLeafChild) slots[8 * at + k] = light[tree.surfels[8 * at + k]];
-            if (node.child[k] < 0) continue;
-            const auto below = static_cast<size_t>(node.child[k]);
-            const WideNode& inner = tree.nodes[below];
-            const Summary parent{.middle = middle_of(node, k),
-                                 .axis = axis_of(node, k),
-                                 .bound = node.bound[k],
-                                 .thickness = node.thickness[k]};
+            const size_t slot = 8 * at + k;
+            if (node.child[k] == kLeafChild) slots[slot] = light[tree.surfels[slot]];
             SideLight sum;
             float front = 0, back = 0;
-            for (size_t c = 0; c < 8; ++c) {
-                if (inner.child[c] == kNoChild) continue;
-                const Facing share = facing(inner, c, tree.areas[8 * below + c], parent);
-                const SideLight& own = slots[8 * below + c];
+            for_each_child(tree, slot, [&](size_t child) {
+                const Facing share = facing(tree, slot, child);
+                const SideLight& own = slots[child];
                 sum.front += share.front * (share.same ? own.front : own.back);
                 sum.back += share.back * (share.same ? own.back : own.front);
                 front += share.front, back += share.back;
-            }
+            });
+            if (node.child[k] < 0) continue;
             if (front > 0) sum.front /= front;
             if (back > 0) sum.back /= back;
-            slots[8 * at + k] = sum;
+            slots[slot] = sum;
         }
     });
 }

@@ -1,0 +1,275 @@
+#include "gi/engines/environment/environment.h"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "gi/bounce_options.h"
+#include "gi/engines/environment/caches.h"
+#include "gi/engines/environment/options.h"
+#include "gi/engines/environment/primaries.h"
+#include "gi/engines/environment/secondaries.h"
+#include "gi/gather/final_gather.h"
+#include "gi/gather/gather_options.h"
+#include "gi/gather/tree_lighting.h"
+#include "gi/gl_frame.h"
+#include "gi/host_frame.h"
+#include "gi/lighting/light_options.h"
+#include "gi/shared/brdf.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi {
+namespace environment {
+namespace {
+
+constexpr const OptionInfo* kOptions[] = {
+    &kBounces.info,        &kOnlyBounce.info,  &kMicroBuffer.info,     &kCacheSpacing.info,
+    &kRadiosityLevel.info, &kGatherEvery.info, &kLightResolution.info, &kLightSamples.info,
+    &kBruteForce.info,     &kSeed.info};
+constexpr EngineInfo kInfo{
+    .name = "environment",
+    .label = "Daylight",
+    .description = "light of the sky and between surfaces, gathered at visible points, on OpenCL",
+    .options = kOptions,
+    .needs = {.light_cut = true, .light_views = true, .opencl = true}};
+
+constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
+constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 341 MiB
+constexpr float kReach = 3;               ///< of a cache, in radii of its node
+constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
+constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
+constexpr uint32_t kRepairSpacing = 4;    ///< pixels between those lonely ones that gather first
+constexpr size_t kRepairsAtOnce = 16384;  ///< micro-buffers of lonely pixels
+
+class EnvironmentEngine final : public Engine {
+ public:
+    const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override;
+
+ protected:
+    void update(const Changes& changes) override { lighting_.update(changes); }
+    Result<void> prepare(Frame& frame) override { return lighting_.prepare(frame, kInfo.name); }
+    Result<void> render(Frame& frame) override;
+
+ private:
+    Result<void> gather(Frame& frame);
+    Result<void> light_secondaries(Frame& frame, std::span<const SidePlace> primaries);
+    Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
+    Result<void> repair(Frame& frame, std::span<const SurfacePoint> surfaces, std::vector<uint32_t> lonely,
+                        Gathered what, std::vector<glm::vec4>& light);
+
+    TreeLighting lighting_;
+    MicroBuffers buffers_, repairs_;
+    Secondaries secondaries_;
+    std::vector<Cache> caches_;
+    GatherCounts lobes_;
+    uint64_t seed_ = 0;
+    size_t primaries_ = 0, repaired_ = 0;
+};
+
+/// What pixels show: of the light that surfels send out, and of the sky.
+Gathered shown(const EngineSettings& s, bool sky) {
+    if (!wants_indirect(s)) return Gathered::sky;
+    return wants_direct(s) && sky ? Gathered::both : Gathered::light_of_surfels;
+}
+
+GatherPoint point_at(const glm::vec3& position, const glm::vec3& normal, float lift, uint64_t seed) {
+    return {.position = position,
+            .lift = lift,
+            .normal = normal,
+            .seed = static_cast<uint32_t>(seed),
+            .viewer = glm::vec3(0.0f),
+            .exponent = 0,
+            .axis = normal,
+            .scale = 1};
+}
+
+/// Sets the light of the surfels, and what they reflect of the sky and of each other up to the last bounce.
+Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const SidePlace> primaries) {
+    const EngineSettings& s = frame.settings;
+    const bool only = s[kOnlyBounce] >= 0, sky = lighting_.has_sky();
+    const uint32_t bounces = only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces];
+    ClDevice& device = lighting_.opencl();
+    Gatherer& gatherer = lighting_.gatherer();
+    // What arrives at secondary points: the sky, and after the second bounce the light of other surfels.
+    const bool farther = bounces > 1;
+    LUCARNE_TRY(lighting_.make_light(frame, {.bounces = farther ? bounces - 2 : 0,
+                                             .sky = sky && farther,
+                                             .only_last = only,
+                                             .side = kSecondarySide,
+                                             .seed = seed_}));
+    if (frame.stopped() || (!farther && !sky)) return {};
+    const Gathered arriving = !farther       ? Gathered::sky
+                              : only || !sky ? Gathered::light_of_surfels
+                                             : Gathered::both;
+    const SurfelTree& tree = lighting_.lit().tree();
+    std::vector<glm::vec3> at_primaries;
+    {
+        const TimedPass pass(frame, "secondary points");
+        if (s[kBruteForce]) {
+            secondaries_.choose_all(tree);
+        } else {
+            LUCARNE_ASSIGN(const auto light, gatherer.shade(device, arriving, buffers_));
+            std::vector<uint32_t> sides;
+            for (size_t i = 0; i < primaries.size(); ++i) {
+                at_primaries.push_back(kPi * light[i].on(primaries[i].normal));
+                sides.push_back(primaries[i].side);
+            }
+            LUCARNE_ASSIGN(const auto seen, buffers_.seen());
+            secondaries_.choose(tree, seen, sides);
+        }
+    }
+    std::vector<GatherPoint> points;
+    std::vector<glm::vec3> irradiances;
+    {
+        const TimedPass pass(frame, "light at secondary points");
+        for (const uint32_t side : secondaries_.gathering()) {
+            const SidePlace place = place_of(tree, lighting_.lit().surfels(), side);
+            points.push_back(point_at(place.position, place.normal, place.lift, mix64(seed_ + 1, side)));
+        }
+        std::vector<glm::vec4> gathered(points.size());
+        LUCARNE_TRY(gatherer.gather(device, arriving, points, kSecondarySide, seed_, gathered, frame.stop));
+        for (const glm::vec4& light : gathered) irradiances.push_back(kPi * glm::vec3(light));
+    }
+    if (frame.stopped()) return {};
+    const TimedPass pass(frame, "propagation");
+    const auto light = secondaries_.propagate(tree, at_primaries, irradiances);
+    return lighting_.set_irradiance(light, !only || bounces == 1);
+}
+
+/// Lights the micro-buffers of the primary points.
+Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePlace> primaries,
+                                           Gathered what) {
+    const TimedPass pass(frame, "caches");
+    LUCARNE_ASSIGN(const auto light, lighting_.gatherer().shade(lighting_.opencl(), what, buffers_));
+    LUCARNE_ASSIGN(const auto nearness, buffers_.nearness());
+    caches_.clear();
+    for (size_t i = 0; i < primaries.size(); ++i) {
+        const SidePlace& place = primaries[i];
+        const float reach = std::clamp(kShareOfDistance / std::max(nearness[i], 1e-9f),
+                                       kLeastReach * place.size, kReach * place.size);
+        caches_.push_back({place.position, place.normal, reach, light[i]});
+    }
+    return {};
+}
+
+/// Gathers light for pixels that no cache counts for: at some of them for those about them, and then at all
+/// that are still lonely.
+Result<void> EnvironmentEngine::repair(Frame& frame, std::span<const SurfacePoint> surfaces,
+                                       std::vector<uint32_t> lonely, Gathered what,
+                                       std::vector<glm::vec4>& light) {
+    const TimedPass pass(frame, "lonely pixels");
+    const CameraView& camera = frame.camera;
+    for (const uint32_t spacing : {kRepairSpacing, 1u}) {
+        std::vector<uint32_t> chosen;
+        for (const uint32_t pixel : lonely)
+            if ((pixel % camera.width) % spacing == spacing / 2 &&
+                (pixel / camera.width) % spacing == spacing / 2)
+                chosen.push_back(pixel);
+        std::vector<Cache> caches;
+        for (size_t first = 0; first < chosen.size(); first += kRepairsAtOnce) {
+            if (frame.stopped()) return {};
+            const std::span<const uint32_t> some =
+                std::span(chosen).subspan(first, std::min(kRepairsAtOnce, chosen.size() - first));
+            std::vector<GatherPoint> points;
+            for (const uint32_t pixel : some) {
+                const SurfacePoint& at = surfaces[pixel];
+                points.push_back(point_at(at.position, at.normal, at.radius, mix64(seed_ + 2, pixel)));
+                points.back().viewer = at.viewer;
+            }
+            LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer],
+                                                 seed_, repairs_, frame.stop));
+            LUCARNE_ASSIGN(const auto gathered,
+                           lighting_.gatherer().shade(lighting_.opencl(), what, repairs_));
+            for (size_t i = 0; i < gathered.size(); ++i) {
+                const SurfacePoint& at = surfaces[some[i]];
+                light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
+                float depth = 0;
+                view_place(camera, at.position, depth);
+                caches.push_back(
+                    {at.position, at.normal,
+                     1.5f * static_cast<float>(spacing) * pixel_height(camera, depth) + at.radius,
+                     gathered[i]});
+            }
+        }
+        repaired_ += chosen.size();
+        if (spacing > 1) lonely = interpolate(camera, surfaces, lonely, caches, light);
+    }
+    return {};
+}
+
+/// Sets the picture to what pixels reflect of the light of surfels and of the sky.
+Result<void> EnvironmentEngine::gather(Frame& frame) {
+    const EngineSettings& s = frame.settings;
+    LUCARNE_TRY(lighting_.make_tree(frame));
+    const SurfelTree& tree = lighting_.lit().tree();
+    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    std::vector<SidePlace> primaries;
+    {
+        const TimedPass pass(frame, "primary points");
+        primaries = primary_places(tree, lighting_.lit().surfels(), frame.camera, surfaces,
+                                   static_cast<float>(s[kCacheSpacing]), kMostPrimaries);
+        primaries_ = primaries.size();
+    }
+    {
+        const TimedPass pass(frame, "micro-buffers");
+        std::vector<GatherPoint> points;
+        for (const SidePlace& place : primaries)
+            points.push_back(point_at(place.position, place.normal, place.lift, mix64(seed_, place.side)));
+        LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, s[kMicroBuffer], seed_, buffers_,
+                                             frame.stop));
+    }
+    if (frame.stopped()) return {};
+    if (wants_indirect(s)) LUCARNE_TRY(light_secondaries(frame, primaries));
+    if (frame.stopped()) return {};
+    const Gathered what = shown(s, lighting_.has_sky());
+    LUCARNE_TRY(add_caches(frame, primaries, what));
+    std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
+    std::vector<uint32_t> lonely;
+    {
+        const TimedPass pass(frame, "interpolation");
+        std::vector<uint32_t> pixels;
+        for (uint32_t i = 0; i < surfaces.size(); ++i)
+            if (surfaces[i].radius > 0) pixels.push_back(i);
+        lonely = interpolate(frame.camera, surfaces, pixels, caches_, light);
+    }
+    LUCARNE_TRY(repair(frame, surfaces, std::move(lonely), what, light));
+    if (frame.stopped()) return {};
+    LUCARNE_TRY(reflect(frame, lighting_.opencl(), lighting_.gatherer(), what, surfaces, light, lobes_));
+    if (!frame.stopped()) upload_radiance(frame, light);
+    return {};
+}
+
+Result<void> EnvironmentEngine::render(Frame& frame) {
+    lighting_.begin(frame);
+    frame.gl.radiance.clear(0);
+    seed_ = mix64(frame.settings[kSeed], frame.index);
+    primaries_ = repaired_ = 0;
+    secondaries_ = {};
+    const bool direct = wants_direct(frame.settings);
+    if (wants_indirect(frame.settings) || (direct && lighting_.has_sky())) LUCARNE_TRY(gather(frame));
+    if (frame.stopped() || !direct) return {};
+    return lighting_.add_direct(frame);
+}
+
+std::vector<std::pair<std::string, double>> EnvironmentEngine::stats() const {
+    const Secondaries::Counts& counts = secondaries_.counts();
+    return {{"surfels", lighting_.lit().tree().leaves}, {"primary_points", primaries_},
+            {"secondary_points", counts.seen},          {"after_up", counts.after_up},
+            {"after_down", counts.after_down},          {"lonely_pixels", repaired_}};
+}
+
+}  // namespace
+}  // namespace environment
+
+EngineEntry environment_engine() {
+    return {environment::kInfo,
+            []() -> std::unique_ptr<Engine> { return std::make_unique<environment::EnvironmentEngine>(); }};
+}
+
+}  // namespace lucarne::gi

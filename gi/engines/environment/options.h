@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+
+#include "gi/options.h"
+
+namespace lucarne::gi::environment {
+
+inline constexpr Option<uint32_t> kCacheSpacing{{
+    .kind = OptionKind::integer,
+    .key = "cache_spacing",
+    .label = "cache spacing",
+    .help = "About how many pixels lie between places where light is gathered; others interpolate",
+    .cost = "pixels from one place that gathers light to the next: half as many take four times as long,\n"
+            "and resolve finer shadows",
+    .least = 2,
+    .most = 64,
+    .slider = {4, 32, true},
+    .defaults = {int64_t{16}, int64_t{8}, int64_t{4}},
+    .cheaper = 1,
+}};
+
+inline constexpr Option<bool> kBruteForce{{
+    .kind = OptionKind::flag,
+    .key = "brute_force",
+    .label = "brute force",
+    .help = "Gather the light of every surfel, to check what leaving most of them out changes",
+    .cost = "many times slower: it only serves to check the shortcuts of this engine",
+    .defaults = {false, false, false},
+}};
+
+}  // namespace lucarne::gi::environment
