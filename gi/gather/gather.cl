@@ -13,10 +13,9 @@
 #define ROW LUCARNE_ROW
 #define PIXELS (GRID * ROW)
 // Nodes are opened if their radius over their distance is larger. With buffers of 24^2 whole nodes are four pixels
-// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Those that are drawn with a
-// probability are noise.
-#define LARGEST_WHOLE fmin(4.0f / GRID, 0.15f)
-#define LARGEST_PART fmin(2.0f / GRID, 0.075f)
+// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are noise.
+#define LARGEST_SURFACE fmin(4.0f / GRID, 0.2f)
+#define LARGEST_CLOUD fmin(2.0f / GRID, 0.1f)
 #define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
@@ -114,6 +113,25 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
     return start + viewer * distance + axis * (dot(axis, viewer) > 0.0f ? radius : -radius);
 }
 
+// Returns whether points of a node's plane, relative to its middle, are in parts of its box that its mask has.
+int8 hidden(uint mask_low, uint mask_high, float3 axis, float3 low, float3 high, float8 x, float8 y, float8 z) {
+    float3 size = fabs(axis), scale = 8.0f / (high - low);
+    float8 i, j;
+    if (size.x >= size.y && size.x >= size.z) {
+        i = (y - low.y) * scale.y;
+        j = (z - low.z) * scale.z;
+    } else if (size.y >= size.z) {
+        i = (z - low.z) * scale.z;
+        j = (x - low.x) * scale.x;
+    } else {
+        i = (x - low.x) * scale.x;
+        j = (y - low.y) * scale.y;
+    }
+    uint8 bit = convert_uint8_sat(fmin(i, 7.0f)) + 8u * convert_uint8_sat(fmin(j, 7.0f));
+    uint8 word = select((uint8)(mask_low), (uint8)(mask_high), bit >= 32u);
+    return ((word >> (bit & 31u)) & 1u) != 0u;
+}
+
 // Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
 // and its slot. `side` and `across` are the axes of the picture, which reaches to `scale` along them; `rays` are the
 // directions of its pixels, zero where a pixel has no ray.
@@ -137,14 +155,13 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
         above &= dx * axis.x + dy * axis.y + dz * axis.z > -bound;
-        float8 fill = vload8(0, node->fill);
-        float8 limit = select((float8)(LARGEST_PART), (float8)(LARGEST_WHOLE), fill >= 1.0f) * scale;
+        int8 cloud = vload8(0, node->high_x) == (float8)(kCloud);
+        float8 limit = select((float8)(LARGEST_SURFACE), (float8)(LARGEST_CLOUD), cloud) * scale;
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         top = push(go, child, stack, top);
         if (!any(drawn)) continue;
         float8 nearer = rsqrt(distance2);
-        int8 cloud = fill < 0.0f;
         nx = select(nx, dx * nearer, cloud);
         ny = select(ny, dy * nearer, cloud);
         nz = select(nz, dz * nearer, cloud);
@@ -171,9 +188,14 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
             if (!draws[k]) continue;
             uint slot = (uint)(at * 8 + k);
             int first = (int)left[k], last = (int)right[k], end = (int)lower[k];
-            float radius2 = node->bound[k] * node->bound[k], part = fabs(node->fill[k]);
-            float low_x = node->low_x[k], low_y = node->low_y[k], low_z = node->low_z[k];
-            float high_x = node->high_x[k], high_y = node->high_y[k], high_z = node->high_z[k];
+            float radius2 = node->bound[k] * node->bound[k];
+            float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
+            float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
+            uint mask_low = node->mask_low[k], mask_high = node->mask_high[k];
+            bool whole = (mask_low & mask_high) == 0xffffffffu, scattered = high.x == kCloud;
+            float part = low.x;
+            if (scattered) low = (float3)(-NOTHING), high = (float3)(NOTHING);
+            float3 normal_k = (float3)(axis_x[k], axis_y[k], axis_z[k]);
             for (int j = (int)upper[k]; j <= end; ++j)
                 for (int i = first; i <= last; i += 8) {
                     int pixel = j * ROW + i;
@@ -184,9 +206,12 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
                     float8 depth = vload8(0, depths + pixel);
                     uint8 held = vload8(0, slots + pixel);
                     int8 met = (t > 0.0f) & ((t < depth) | ((t == depth) & (held > slot)));
-                    met &= (ox >= low_x) & (ox <= high_x) & (oy >= low_y) & (oy <= high_y);
-                    met &= (oz >= low_z) & (oz <= high_z) & (ox * ox + oy * oy + oz * oz <= radius2);
-                    if (part < 1.0f) met &= fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel) < part;
+                    met &= (ox >= low.x) & (ox <= high.x) & (oy >= low.y) & (oy <= high.y);
+                    met &= (oz >= low.z) & (oz <= high.z) & (ox * ox + oy * oy + oz * oz <= radius2);
+                    if (scattered)
+                        met &= fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel) < part;
+                    else if (!whole)
+                        met &= hidden(mask_low, mask_high, normal_k, low, high, ox, oy, oz);
                     vstore8(select(depth, t, met), 0, depths + pixel);
                     vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
                 }

@@ -12,6 +12,7 @@
 #include "gi/shared/disc.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/tree/coverage.h"
 #include "io/core/parallel.h"
 #include "octree/tree/radix_sort.h"
 
@@ -217,92 +218,28 @@ Disc disc_of(const FlatSurfel& s) {
 struct Summary {
     glm::vec3 middle{0.0f}, axis{0.0f, 0.0f, 1.0f};
     float bound = 0, thickness = 0, area = 0;
-    Box box;         ///< the bounds of its discs, m
-    float fill = 1;  ///< the share of what is drawn for it that its discs cover
+    Box box;                       ///< the bounds of its discs, m
+    uint64_t mask = ~uint64_t{0};  ///< WideNode::mask
     bool cloud = false;
+    float fill = 1;  ///< of a cloud, the share of its sphere that its discs hide
 };
 
-/// A grid of points in a rectangle across an axis of the coordinates, and which of them discs cover.
-class Coverage {
- public:
-    /// `w`: the axis; the points lie in the plane through `origin` with the given normal, whose w is not 0.
-    Coverage(int w, const glm::vec3& low, const glm::vec3& high, const glm::vec3& origin,
-             const glm::vec3& normal)
-        : w_(w), u_((w + 1) % 3), v_((w + 2) % 3), low_(low), origin_(origin), normal_(normal) {
-        cell_ = (high - low) / static_cast<float>(kSide);
-    }
-    glm::vec3 point(int i, int j) const {
-        glm::vec3 p;
-        p[u_] = low_[u_] + cell_[u_] * (static_cast<float>(i) + 0.5f);
-        p[v_] = low_[v_] + cell_[v_] * (static_cast<float>(j) + 0.5f);
-        p[w_] = origin_[w_] -
-                ((p[u_] - origin_[u_]) * normal_[u_] + (p[v_] - origin_[v_]) * normal_[v_]) / normal_[w_];
-        return p;
-    }
-    /// Adds the points that a disc hides from whoever looks along `normal`, or along the axis if the disc
-    /// has its own `normal`.
-    void add(const glm::vec3& middle, float radius, const glm::vec3& normal) {
-        const Range columns = range(u_, middle, radius), rows = range(v_, middle, radius);
-        for (int j = rows.first; j < rows.last; ++j)
-            for (int i = columns.first; i < columns.last; ++i) {
-                glm::vec3 away = point(i, j) - middle;
-                away[w_] = -(away[u_] * normal[u_] + away[v_] * normal[v_]) / normal[w_];
-                if (glm::dot(away, away) <= radius * radius) covered_ |= uint64_t{1} << (kSide * j + i);
-            }
-    }
-    /// Returns the share of those points for which inside(point) is true that are covered.
-    template <class Inside>
-    float share(const Inside& inside) const {
-        int all = 0, hidden = 0;
-        for (int j = 0; j < kSide; ++j)
-            for (int i = 0; i < kSide; ++i)
-                if (inside(point(i, j))) {
-                    ++all;
-                    hidden += (covered_ >> (kSide * j + i) & 1) != 0;
-                }
-        return all > 0 ? static_cast<float>(hidden) / static_cast<float>(all) : 1;
-    }
-
- private:
-    static constexpr int kSide = 8;
-    struct Range {
-        int first, last;
-    };
-    Range range(int axis, const glm::vec3& middle, float radius) const {
-        if (!(cell_[axis] > 0)) return {0, kSide};
-        const auto place = [&](float at) {
-            return static_cast<int>(std::clamp((at - low_[axis]) / cell_[axis] + 0.5f, 0.0f, 1.0f * kSide));
-        };
-        return {place(middle[axis] - radius), place(middle[axis] + radius)};
-    }
-
-    int w_, u_, v_;
-    glm::vec3 low_, origin_, normal_, cell_;
-    uint64_t covered_ = 0;
-};
-
-int largest_of(const glm::vec3& v) {
-    const glm::vec3 size = glm::abs(v);
-    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-}
-
-/// Returns the share of a surface that its discs hide; 1 if it has no holes and no end within `squares`.
-float flat_fill(std::span<const Disc> discs, const Summary& node, const Box& squares) {
-    const glm::vec3 room = node.thickness * glm::abs(node.axis);
-    const auto within = [&](const Box& box) {
-        return [&](const glm::vec3& p) {
-            return glm::all(glm::greaterThanEqual(p, box.low - room)) &&
-                   glm::all(glm::lessThanEqual(p, box.high + room));
-        };
-    };
-    Coverage coverage(largest_of(node.axis), node.box.low - room, node.box.high + room, node.middle,
-                      node.axis);
+/// Sets what a surface's discs hide of its box; all of it if there are no holes and no end within `squares`.
+void cover_surface(std::span<const Disc> discs, const Box& squares, Summary& node) {
+    // All discs shall be within the box if they are moved into the plane.
+    const glm::vec3 margin = (node.thickness + kThinnest * node.bound) * glm::abs(node.axis);
+    node.box = {node.box.low - margin, node.box.high + margin};
+    Coverage coverage(largest_axis(node.axis), node.box.low, node.box.high, node.middle, node.axis);
     for (const Disc& disc : discs) {
         const glm::vec3 offset = disc.middle - node.middle;
         coverage.add(disc.middle - node.axis * glm::dot(offset, node.axis), disc.radius, node.axis);
     }
     const float uneven = kUneven / std::sqrt(static_cast<float>(discs.size()));
-    return coverage.share(within(squares)) < kFilled - uneven ? coverage.share(within(node.box)) : 1;
+    const float filled = coverage.share([&](const glm::vec3& p) {
+        return glm::all(glm::greaterThanEqual(p, squares.low - margin)) &&
+               glm::all(glm::lessThanEqual(p, squares.high + margin));
+    });
+    if (filled < kFilled - uneven) node.mask = coverage.covered();
 }
 
 /// Returns the share of its sphere that a cloud hides, the mean of three directions.
@@ -347,7 +284,11 @@ Summary summary_of(std::span<const Disc> discs) {
                                                     disc_reach(disc.radius, glm::dot(disc.normal, sum.axis)));
     }
     sum.cloud = sum.thickness > kThickCloud * sum.bound && moments.agreement() < kOneSurface;
-    if (discs.size() > 1) sum.fill = sum.cloud ? cloud_fill(discs, sum) : flat_fill(discs, sum, squares);
+    if (discs.size() == 1) return sum;
+    if (sum.cloud)
+        sum.fill = cloud_fill(discs, sum);
+    else
+        cover_surface(discs, squares, sum);
     return sum;
 }
 
@@ -355,13 +296,15 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.x[k] = s.middle.x, node.y[k] = s.middle.y, node.z[k] = s.middle.z;
     node.nx[k] = s.axis.x, node.ny[k] = s.axis.y, node.nz[k] = s.axis.z;
     node.bound[k] = s.bound, node.thickness[k] = s.thickness;
-    node.fill[k] = s.cloud ? -s.fill : s.fill;
+    node.mask_low[k] = static_cast<uint32_t>(s.mask);
+    node.mask_high[k] = static_cast<uint32_t>(s.mask >> 32);
     glm::vec3 low(-kFarAway), high(kFarAway);
-    if (!leaf && !s.cloud) {
-        // All discs shall be within the box if they are moved into the plane.
-        const glm::vec3 margin = (s.thickness + kThinnest * s.bound) * glm::abs(s.axis);
-        low = s.box.low - s.middle - margin;
-        high = s.box.high - s.middle + margin;
+    if (s.cloud && !leaf) {
+        low.x = s.fill;
+        high.x = kCloud;
+    } else if (!leaf) {
+        low = s.box.low - s.middle;
+        high = s.box.high - s.middle;
     }
     node.low_x[k] = low.x, node.low_y[k] = low.y, node.low_z[k] = low.z;
     node.high_x[k] = high.x, node.high_y[k] = high.y, node.high_z[k] = high.z;

@@ -10,6 +10,7 @@ namespace lucarne::gi {
 
 LUCARNE_CONST int kLeafChild = -1;  // the child is one surfel
 LUCARNE_CONST int kNoChild = -2;
+LUCARNE_CONST float kCloud = -1.0f;
 
 // Eight children, each property in a row of its own, so that one vector load reads it for all of them. A
 // "slot" is 8 * node + place of the child.
@@ -24,13 +25,16 @@ LUCARNE_STRUCT(WideNode) {
     float bound[8];             // radius of the sphere about the middle that holds all discs of the child, m
     float nx[8], ny[8], nz[8];  // unit axis: a surfel's normal, or the direction that most normals share
     float thickness[8];         // no disc is farther from the plane through the middle, m
-    float fill[8];              // share of what is drawn that its discs cover, up to 1; negative: of a cloud
-    float low_x[8], low_y[8], low_z[8], high_x[8], high_y[8], high_z[8];  // the box, from the middle, m
+    // The box, from the middle, m. Of a cloud low_x is its probability, and high_x is kCloud.
+    float low_x[8], low_y[8], low_z[8], high_x[8], high_y[8], high_z[8];
+    // Bit 8 j + i is the part i along the axis after that along which the node's own axis is longest (after z
+    // comes x), and j along the next.
+    uint mask_low[8], mask_high[8];
     int child[8];  // number of a node, or one of the constants above
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(WideNode) == 512);
+static_assert(sizeof(WideNode) == 544);
 }  // namespace lucarne::gi
 #endif
 #endif

@@ -21,65 +21,6 @@ constexpr float kInFront = 0.06f;
 /// Pixels with less weight than this in all are lonely.
 constexpr float kLeastSum = 0.02f;
 
-struct Bounding {
-    uint32_t left = 0, right = 0, upper = 0, lower = 0;  ///< tiles; the last ones are not included
-};
-
-/// The caches that may count for the pixels of each tile of the picture, in their order.
-class Tiles {
- public:
-    Tiles(const CameraView& camera, std::span<const Cache> caches)
-        : columns_((camera.width + kTileSide - 1) / kTileSide),
-          rows_((camera.height + kTileSide - 1) / kTileSide) {
-        std::vector<Bounding> bounds;
-        starts_.assign(size_t{columns_} * rows_ + 1, 0);
-        for (const Cache& cache : caches) {
-            bounds.push_back(bounding_of(camera, cache));
-            for_each_tile(bounds.back(), [&](size_t tile) { ++starts_[tile + 1]; });
-        }
-        for (size_t tile = 1; tile < starts_.size(); ++tile) starts_[tile] += starts_[tile - 1];
-        numbers_.resize(starts_.back());
-        std::vector<size_t> next(starts_.begin(), starts_.end() - 1);
-        for (uint32_t i = 0; i < caches.size(); ++i)
-            for_each_tile(bounds[i], [&](size_t tile) { numbers_[next[tile]++] = i; });
-    }
-    std::span<const uint32_t> at(uint32_t x, uint32_t y) const {
-        const size_t tile = size_t{y / kTileSide} * columns_ + x / kTileSide;
-        return std::span(numbers_).subspan(starts_[tile], starts_[tile + 1] - starts_[tile]);
-    }
-
- private:
-    Bounding bounding_of(const CameraView& camera, const Cache& cache) const {
-        float depth = 0;
-        const glm::vec2 place = view_place(camera, cache.position, depth);
-        const Bounding everywhere{0, columns_, 0, rows_};
-        if (!is_parallel(camera) && depth < 2 * cache.reach)
-            return depth < -cache.reach ? Bounding{} : everywhere;
-        // Off the axis a sphere's picture is longer than on it, at most by this much.
-        const float stretch = is_parallel(camera)
-                                  ? 1
-                                  : 1 + glm::dot(glm::vec3(camera.right), glm::vec3(camera.right)) +
-                                        glm::dot(glm::vec3(camera.up), glm::vec3(camera.up));
-        const float radius = cache.reach / pixel_height(camera, depth - cache.reach) * std::sqrt(stretch);
-        if (!(place.x + radius >= 0 && place.y + radius >= 0)) return {};
-        const auto tile = [](float at, uint32_t most) {
-            return static_cast<uint32_t>(std::clamp(at / kTileSide, 0.0f, static_cast<float>(most)));
-        };
-        return {tile(place.x - radius, columns_), std::min(tile(place.x + radius, columns_) + 1, columns_),
-                tile(place.y - radius, rows_), std::min(tile(place.y + radius, rows_) + 1, rows_)};
-    }
-    template <class Body>
-    void for_each_tile(const Bounding& bounds, const Body& body) const {
-        for (uint32_t row = bounds.upper; row < bounds.lower; ++row)
-            for (uint32_t column = bounds.left; column < bounds.right; ++column)
-                body(size_t{row} * columns_ + column);
-    }
-
-    uint32_t columns_, rows_;
-    std::vector<size_t> starts_;  ///< of each tile's caches in numbers_, and the end
-    std::vector<uint32_t> numbers_;
-};
-
 /// Returns how much a cache counts for a surface point, 0 to 1.
 float weight_of(const Cache& cache, const SurfacePoint& at) {
     const glm::vec3 offset = at.position - cache.position;
@@ -96,26 +37,75 @@ float weight_of(const Cache& cache, const SurfacePoint& at) {
 
 }  // namespace
 
+template <class Body>
+void CacheTiles::for_each_tile(const Range& range, const Body& body) const {
+    for (uint32_t row = range.upper; row < range.lower; ++row)
+        for (uint32_t column = range.left; column < range.right; ++column)
+            body(size_t{row} * columns_ + column);
+}
+
+CacheTiles::CacheTiles(const CameraView& camera, std::span<const Cache> caches)
+    : caches_(caches),
+      columns_((camera.width + kTileSide - 1) / kTileSide),
+      rows_((camera.height + kTileSide - 1) / kTileSide) {
+    std::vector<Range> ranges;
+    starts_.assign(size_t{columns_} * rows_ + 1, 0);
+    for (const Cache& cache : caches) {
+        ranges.push_back(range_of(camera, cache));
+        for_each_tile(ranges.back(), [&](size_t tile) { ++starts_[tile + 1]; });
+    }
+    for (size_t tile = 1; tile < starts_.size(); ++tile) starts_[tile] += starts_[tile - 1];
+    numbers_.resize(starts_.back());
+    std::vector<size_t> next(starts_.begin(), starts_.end() - 1);
+    for (uint32_t i = 0; i < caches.size(); ++i)
+        for_each_tile(ranges[i], [&](size_t tile) { numbers_[next[tile]++] = i; });
+}
+
+CacheTiles::Range CacheTiles::range_of(const CameraView& camera, const Cache& cache) const {
+    float depth = 0;
+    const glm::vec2 place = view_place(camera, cache.position, depth);
+    if (!is_parallel(camera) && depth < 2 * cache.reach)
+        return depth < -cache.reach ? Range{} : Range{0, columns_, 0, rows_};
+    // Off the axis a sphere's picture is longer than on it, at most by this much.
+    const float stretch = is_parallel(camera)
+                              ? 1
+                              : 1 + glm::dot(glm::vec3(camera.right), glm::vec3(camera.right)) +
+                                    glm::dot(glm::vec3(camera.up), glm::vec3(camera.up));
+    const float radius = cache.reach / pixel_height(camera, depth - cache.reach) * std::sqrt(stretch);
+    if (!(place.x + radius >= 0 && place.y + radius >= 0)) return {};
+    const auto tile = [](float at, uint32_t most) {
+        return static_cast<uint32_t>(std::clamp(at / kTileSide, 0.0f, static_cast<float>(most)));
+    };
+    return {tile(place.x - radius, columns_), std::min(tile(place.x + radius, columns_) + 1, columns_),
+            tile(place.y - radius, rows_), std::min(tile(place.y + radius, rows_) + 1, rows_)};
+}
+
+std::optional<glm::vec3> CacheTiles::light_at(const SurfacePoint& at, uint32_t x, uint32_t y) const {
+    const size_t tile = size_t{y / kTileSide} * columns_ + x / kTileSide;
+    glm::vec3 sum(0.0f);
+    float weights = 0;
+    for (size_t i = starts_[tile]; i < starts_[tile + 1]; ++i) {
+        const Cache& cache = caches_[numbers_[i]];
+        const float weight = weight_of(cache, at);
+        if (!(weight > 0)) continue;
+        sum += weight * cache.light.on(at.normal);
+        weights += weight;
+    }
+    if (weights > kLeastSum) return sum / weights;
+    return std::nullopt;
+}
+
 std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const SurfacePoint> surfaces,
                                   std::span<const uint32_t> pixels, std::span<const Cache> caches,
                                   std::span<glm::vec4> light) {
-    const Tiles tiles(camera, caches);
+    const CacheTiles tiles(camera, caches);
     std::vector<std::vector<uint32_t>> lonely((pixels.size() + kPixelsAPiece - 1) / kPixelsAPiece);
     parallel_ranges(pixels.size(), kPixelsAPiece, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const uint32_t pixel = pixels[i];
-            const SurfacePoint& at = surfaces[pixel];
-            glm::vec3 sum(0.0f);
-            float weights = 0;
-            for (const uint32_t number : tiles.at(pixel % camera.width, pixel / camera.width)) {
-                const Cache& cache = caches[number];
-                const float weight = weight_of(cache, at);
-                if (!(weight > 0)) continue;
-                sum += weight * cache.light.on(at.normal);
-                weights += weight;
-            }
-            if (weights > kLeastSum)
-                light[pixel] = glm::vec4(sum / weights, 0);
+            const auto found = tiles.light_at(surfaces[pixel], pixel % camera.width, pixel / camera.width);
+            if (found)
+                light[pixel] = glm::vec4(*found, 0);
             else
                 lonely[first / kPixelsAPiece].push_back(pixel);
         }

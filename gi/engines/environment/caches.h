@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,10 +20,35 @@ struct Cache {
     LightVectors light{};
 };
 
-/// Interpolates the light of pixels from caches (Harada 2014, section 3.5): each counts by how near it is and
-/// how much its normal agrees (Ward et al. 1988, with the smooth weights of Tabellion & Lamorlette 2004), and
-/// not at all if it is in front of the pixel's plane. Sets `light` of these `pixels`: the mean radiance for
-/// their normals, W/(sr m^2). Returns those for which nothing counts; their light is left as it is.
+/// Caches by the tiles of the picture in which they may count.
+class CacheTiles {
+ public:
+    /// `caches` must live as long as the tiles.
+    CacheTiles(const CameraView& camera, std::span<const Cache> caches);
+
+    /// Interpolates the light of a surface point from the caches about it (Harada 2014, section 3.5): each
+    /// counts by how near it is and how much its normal agrees (Ward et al. 1988, with the smooth weights of
+    /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. `x` and `y`: the
+    /// pixel that it is seen in, if nothing hides it. Returns the mean radiance for its normal, W/(sr m^2);
+    /// nothing if no cache counts.
+    std::optional<glm::vec3> light_at(const SurfacePoint& at, uint32_t x, uint32_t y) const;
+
+ private:
+    struct Range {
+        uint32_t left = 0, right = 0, upper = 0, lower = 0;  ///< tiles; the last ones are not included
+    };
+    Range range_of(const CameraView& camera, const Cache& cache) const;
+    template <class Body>
+    void for_each_tile(const Range& range, const Body& body) const;
+
+    std::span<const Cache> caches_;
+    uint32_t columns_, rows_;
+    std::vector<size_t> starts_;  ///< of each tile's caches in numbers_, and the end
+    std::vector<uint32_t> numbers_;
+};
+
+/// Sets the `light` of these `pixels` to what CacheTiles::light_at() returns. Returns those for which no
+/// cache counts; their light is left as it is.
 std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const SurfacePoint> surfaces,
                                   std::span<const uint32_t> pixels, std::span<const Cache> caches,
                                   std::span<glm::vec4> light);

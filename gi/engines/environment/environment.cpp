@@ -40,6 +40,8 @@ constexpr EngineInfo kInfo{
 
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 341 MiB
+/// Places between which light is exchanged are this much farther apart than caches.
+constexpr float kCoarser = 2;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
@@ -59,6 +61,8 @@ class EnvironmentEngine final : public Engine {
  private:
     Result<void> gather(Frame& frame);
     Result<void> light_secondaries(Frame& frame, std::span<const SidePlace> primaries);
+    Result<std::vector<glm::vec3>> irradiance_at(Frame& frame, std::span<const uint32_t> sides,
+                                                 Gathered what);
     Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
     Result<void> repair(Frame& frame, std::span<const SurfacePoint> surfaces, std::vector<uint32_t> lonely,
                         Gathered what, std::vector<glm::vec4>& light);
@@ -69,7 +73,7 @@ class EnvironmentEngine final : public Engine {
     std::vector<Cache> caches_;
     GatherCounts lobes_;
     uint64_t seed_ = 0;
-    size_t primaries_ = 0, repaired_ = 0;
+    size_t primaries_ = 0, gathering_ = 0, repaired_ = 0;
 };
 
 /// What pixels show: of the light that surfels send out, and of the sky.
@@ -94,8 +98,6 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
     const EngineSettings& s = frame.settings;
     const bool only = s[kOnlyBounce] >= 0, sky = lighting_.has_sky();
     const uint32_t bounces = only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces];
-    ClDevice& device = lighting_.opencl();
-    Gatherer& gatherer = lighting_.gatherer();
     // What arrives at secondary points: the sky, and after the second bounce the light of other surfels.
     const bool farther = bounces > 1;
     LUCARNE_TRY(lighting_.make_light(frame, {.bounces = farther ? bounces - 2 : 0,
@@ -108,38 +110,58 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
                               : only || !sky ? Gathered::light_of_surfels
                                              : Gathered::both;
     const SurfelTree& tree = lighting_.lit().tree();
-    std::vector<glm::vec3> at_primaries;
     {
         const TimedPass pass(frame, "secondary points");
         if (s[kBruteForce]) {
             secondaries_.choose_all(tree);
         } else {
-            LUCARNE_ASSIGN(const auto light, gatherer.shade(device, arriving, buffers_));
-            std::vector<uint32_t> sides;
-            for (size_t i = 0; i < primaries.size(); ++i) {
-                at_primaries.push_back(kPi * light[i].on(primaries[i].normal));
-                sides.push_back(primaries[i].side);
-            }
+            const float spacing = kCoarser * static_cast<float>(s[kCacheSpacing]);
             LUCARNE_ASSIGN(const auto seen, buffers_.seen());
-            secondaries_.choose(tree, seen, sides);
+            secondaries_.choose(tree, seen,
+                                [&](size_t slot) { return is_fine(tree, slot, frame.camera, spacing); });
         }
     }
-    std::vector<GatherPoint> points;
-    std::vector<glm::vec3> irradiances;
-    {
-        const TimedPass pass(frame, "light at secondary points");
-        for (const uint32_t side : secondaries_.gathering()) {
-            const SidePlace place = place_of(tree, lighting_.lit().surfels(), side);
-            points.push_back(point_at(place.position, place.normal, place.lift, mix64(seed_ + 1, side)));
-        }
-        std::vector<glm::vec4> gathered(points.size());
-        LUCARNE_TRY(gatherer.gather(device, arriving, points, kSecondarySide, seed_, gathered, frame.stop));
-        for (const glm::vec4& light : gathered) irradiances.push_back(kPi * glm::vec3(light));
-    }
+    LUCARNE_TRY(add_caches(frame, primaries, arriving));
+    if (s[kBruteForce]) caches_.clear();
+    LUCARNE_ASSIGN(const auto known, irradiance_at(frame, secondaries_.sides(), arriving));
     if (frame.stopped()) return {};
     const TimedPass pass(frame, "propagation");
-    const auto light = secondaries_.propagate(tree, at_primaries, irradiances);
-    return lighting_.set_irradiance(light, !only || bounces == 1);
+    return lighting_.set_irradiance(secondaries_.propagate(tree, known), !only || bounces == 1);
+}
+
+/// Returns the irradiance of sides, W/m^2: from the caches about them, or by gathering.
+Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, std::span<const uint32_t> sides,
+                                                                Gathered what) {
+    const TimedPass pass(frame, "light at secondary points");
+    const CameraView& camera = frame.camera;
+    const CacheTiles tiles(camera, caches_);
+    std::vector<glm::vec3> irradiances(sides.size(), glm::vec3(0.0f));
+    std::vector<GatherPoint> points;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < sides.size(); ++i) {
+        const SidePlace place = place_of(lighting_.lit().tree(), lighting_.lit().surfels(), sides[i]);
+        float depth = 0;
+        const glm::vec2 at = view_place(camera, place.position, depth);
+        if (depth > 0 && at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(camera.width) &&
+            at.y < static_cast<float>(camera.height)) {
+            const SurfacePoint surface{
+                .position = place.position, .normal = place.normal, .radius = place.radius};
+            const auto found =
+                tiles.light_at(surface, static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y));
+            if (found) {
+                irradiances[i] = kPi * *found;
+                continue;
+            }
+        }
+        points.push_back(point_at(place.position, place.normal, place.radius, mix64(seed_ + 1, sides[i])));
+        places.push_back(i);
+    }
+    std::vector<glm::vec4> gathered(points.size());
+    LUCARNE_TRY(lighting_.gatherer().gather(lighting_.opencl(), what, points, kSecondarySide, seed_, gathered,
+                                            frame.stop));
+    for (size_t i = 0; i < places.size(); ++i) irradiances[places[i]] = kPi * glm::vec3(gathered[i]);
+    gathering_ = points.size();
+    return irradiances;
 }
 
 /// Lights the micro-buffers of the primary points.
@@ -220,7 +242,7 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
         const TimedPass pass(frame, "micro-buffers");
         std::vector<GatherPoint> points;
         for (const SidePlace& place : primaries)
-            points.push_back(point_at(place.position, place.normal, place.lift, mix64(seed_, place.side)));
+            points.push_back(point_at(place.position, place.normal, place.radius, mix64(seed_, place.side)));
         LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, s[kMicroBuffer], seed_, buffers_,
                                              frame.stop));
     }
@@ -249,7 +271,7 @@ Result<void> EnvironmentEngine::render(Frame& frame) {
     lighting_.begin(frame);
     frame.gl.radiance.clear(0);
     seed_ = mix64(frame.settings[kSeed], frame.index);
-    primaries_ = repaired_ = 0;
+    primaries_ = gathering_ = repaired_ = 0;
     secondaries_ = {};
     const bool direct = wants_direct(frame.settings);
     if (wants_indirect(frame.settings) || (direct && lighting_.has_sky())) LUCARNE_TRY(gather(frame));
@@ -258,10 +280,12 @@ Result<void> EnvironmentEngine::render(Frame& frame) {
 }
 
 std::vector<std::pair<std::string, double>> EnvironmentEngine::stats() const {
-    const Secondaries::Counts& counts = secondaries_.counts();
-    return {{"surfels", lighting_.lit().tree().leaves}, {"primary_points", primaries_},
-            {"secondary_points", counts.seen},          {"after_up", counts.after_up},
-            {"after_down", counts.after_down},          {"lonely_pixels", repaired_}};
+    return {{"surfels", lighting_.lit().tree().leaves},
+            {"primary_points", primaries_},
+            {"secondary_points", secondaries_.seen()},
+            {"after_up", secondaries_.sides().size()},
+            {"after_down", gathering_},
+            {"lonely_pixels", repaired_}};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <glm/geometric.hpp>
 
@@ -12,13 +13,23 @@ namespace {
 
 /// A node is curved over this share of thickness to radius; light differs within it, so it counts as larger.
 constexpr float kCurved = 0.2f, kCurvedSize = 2;
-/// Nodes are discs of about this many of their radii across, from the middle of one to the next.
+/// From the middle of a node to that of the next, in radii.
 constexpr float kRadiiApart = 1.6f;
-/// Places beside the picture that pixels at its edges interpolate from, in radii.
-constexpr float kBeside = 3;
+/// Places beside the picture that pixels at its edges interpolate from, in pixels between places.
+constexpr float kBeside = 2;
 /// How far a visible point may be from the plane of a node that it belongs to, in radii.
 constexpr float kOffPlane = 0.25f;
 constexpr int kProbes = 5;  ///< along each axis of a node's picture
+/// A place stands for others that are nearer than this share of the spacing and whose normals agree so well.
+constexpr float kTooNear = 0.7f, kSameDirection = 0.85f;
+
+/// Returns the depth at which a slot is seen in full, at least that of the near plane.
+float depth_of(const SurfelTree& tree, size_t slot, const CameraView& camera) {
+    const WideNode& node = tree.nodes[slot / 8];
+    if (is_parallel(camera)) return 1;
+    const float distance = glm::distance(middle_of(node, slot % 8), glm::vec3(camera.origin));
+    return std::max(distance - node.bound[slot % 8], camera.origin.w);
+}
 
 /// Whether a pixel shows a surface of a node, which is `radius` pixels in size about `at`.
 bool shows(const CameraView& camera, std::span<const SurfacePoint> visible, const SidePlace& place,
@@ -42,7 +53,7 @@ bool shows(const CameraView& camera, std::span<const SurfacePoint> visible, cons
     return false;
 }
 
-/// Collects the primary places; stops beyond `most`.
+/// Collects the places that the picture shows; stops beyond `most`.
 std::vector<SidePlace> collect(const SurfelTree& tree, std::span<const FlatSurfel> surfels,
                                const CameraView& camera, std::span<const SurfacePoint> visible, float spacing,
                                size_t most) {
@@ -55,32 +66,65 @@ std::vector<SidePlace> collect(const SurfelTree& tree, std::span<const FlatSurfe
         const WideNode& node = tree.nodes[at];
         for (uint32_t k = 0; k < 8; ++k) {
             if (node.child[k] == kNoChild) continue;
-            const glm::vec3 middle = middle_of(node, k), axis = axis_of(node, k);
+            const uint32_t slot = 8 * at + k;
+            const glm::vec3 middle = middle_of(node, k);
             const float bound = node.bound[k];
             float depth = 0;
             const glm::vec2 place = view_place(camera, middle, depth);
-            const bool behind = !is_parallel(camera) && depth < camera.origin.w + bound;
+            const bool crosses = !is_parallel(camera) && depth < camera.origin.w + bound;
             if (!is_parallel(camera) && depth < -bound) continue;
-            const float pixel = pixel_height(camera, std::max(depth - bound, camera.origin.w));
-            const float radius = bound / pixel;
-            const float beside = kBeside * radius;
-            if (!behind && (place.x < -beside || place.y < -beside ||
-                            place.x > static_cast<float>(camera.width) + beside ||
-                            place.y > static_cast<float>(camera.height) + beside))
+            const float radius = bound / pixel_height(camera, depth_of(tree, slot, camera));
+            const float beside = radius + kBeside * spacing;
+            if (!crosses && (place.x < -beside || place.y < -beside ||
+                             place.x > static_cast<float>(camera.width) + beside ||
+                             place.y > static_cast<float>(camera.height) + beside))
                 continue;
-            const float size = node.thickness[k] > kCurved * bound ? kCurvedSize * radius : radius;
-            const bool leaf = node.child[k] == kLeafChild;
-            if (!leaf && (behind || kRadiiApart * size > spacing)) {
+            const float size = node.thickness[k] > kCurved * bound ? kCurvedSize : 1.0f;
+            if (node.child[k] != kLeafChild && (crosses || !is_fine(tree, slot, camera, spacing / size))) {
                 waiting.push_back(static_cast<uint32_t>(node.child[k]));
                 continue;
             }
-            const uint32_t slot = 8 * at + k;
-            const uint32_t back = glm::dot(axis, toward_viewer(camera, middle)) < 0;
-            const SidePlace primary = place_of(tree, surfels, 2 * slot + back);
-            if (shows(camera, visible, primary, place, radius)) found.push_back(primary);
+            if (!is_parallel(camera) && depth <= 0) continue;
+            const uint32_t back = glm::dot(axis_of(node, k), toward_viewer(camera, middle)) < 0;
+            SidePlace primary = place_of(tree, surfels, 2 * slot + back);
+            if (!shows(camera, visible, primary, place, radius)) continue;
+            primary.size = std::max(primary.size, spacing / kRadiiApart * pixel_height(camera, depth));
+            found.push_back(primary);
         }
     }
     return found;
+}
+
+/// Returns those places for which no other stands.
+std::vector<SidePlace> thinned(std::vector<SidePlace> places, const CameraView& camera, float spacing) {
+    std::ranges::stable_sort(places, std::greater<>(), &SidePlace::size);
+    // By the cells of the picture; a place looks at the cells about its own.
+    const auto cell = static_cast<float>(std::max(spacing * kTooNear * kRadiiApart, 1.0f));
+    const auto columns = static_cast<int>(static_cast<float>(camera.width) / cell) + 3;
+    const auto rows = static_cast<int>(static_cast<float>(camera.height) / cell) + 3;
+    std::vector<std::vector<uint32_t>> cells(static_cast<size_t>(columns) * static_cast<size_t>(rows));
+    std::vector<SidePlace> kept;
+    for (const SidePlace& place : places) {
+        float depth = 0;
+        const glm::vec2 at = view_place(camera, place.position, depth) / cell + 1.0f;
+        const int x = static_cast<int>(std::clamp(at.x, 0.0f, static_cast<float>(columns - 1)));
+        const int y = static_cast<int>(std::clamp(at.y, 0.0f, static_cast<float>(rows - 1)));
+        const auto stands = [&](uint32_t other) {
+            const SidePlace& o = kept[other];
+            const float reach = kTooNear * kRadiiApart * place.size;
+            return glm::distance(o.position, place.position) < reach &&
+                   glm::dot(o.normal, place.normal) > kSameDirection &&
+                   std::abs(glm::dot(o.position - place.position, o.normal)) < kOffPlane * place.size;
+        };
+        bool needed = true;
+        for (int j = std::max(y - 1, 0); needed && j <= std::min(y + 1, rows - 1); ++j)
+            for (int i = std::max(x - 1, 0); needed && i <= std::min(x + 1, columns - 1); ++i)
+                needed = std::ranges::none_of(cells[static_cast<size_t>(j * columns + i)], stands);
+        if (!needed) continue;
+        cells[static_cast<size_t>(y * columns + x)].push_back(static_cast<uint32_t>(kept.size()));
+        kept.push_back(place);
+    }
+    return kept;
 }
 
 }  // namespace
@@ -88,8 +132,10 @@ std::vector<SidePlace> collect(const SurfelTree& tree, std::span<const FlatSurfe
 SidePlace place_of(const SurfelTree& tree, std::span<const FlatSurfel> surfels, uint32_t side) {
     size_t slot = side / 2;
     const WideNode& node = tree.nodes[slot / 8];
-    const glm::vec3 middle = middle_of(node, slot % 8), axis = axis_of(node, slot % 8);
+    const glm::vec3 middle = middle_of(node, slot % 8);
+    glm::vec3 normal = axis_of(node, slot % 8);
     const float size = node.bound[slot % 8];
+    const bool curved = node.thickness[slot % 8] > kCurved * size;
     while (tree.surfels[slot] == kNoSurfel) {
         size_t nearest = slot;
         float least = INFINITY;
@@ -102,16 +148,28 @@ SidePlace place_of(const SurfelTree& tree, std::span<const FlatSurfel> surfels, 
         slot = nearest;
     }
     const FlatSurfel& surfel = surfels[tree.surfels[slot]];
-    return {side, {surfel.x, surfel.y, surfel.z}, (side & 1) != 0 ? -axis : axis, surfel.radius, size};
+    if (curved) {
+        const glm::vec3 own = decode_octahedral(surfel.normal);
+        normal = glm::dot(own, normal) < 0 ? -own : own;
+    }
+    if ((side & 1) != 0) normal = -normal;
+    return {side, {surfel.x, surfel.y, surfel.z}, normal, surfel.radius, size};
+}
+
+bool is_fine(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing) {
+    const float pixel = pixel_height(camera, depth_of(tree, slot, camera));
+    return kRadiiApart * tree.nodes[slot / 8].bound[slot % 8] <= spacing * pixel;
 }
 
 std::vector<SidePlace> primary_places(const SurfelTree& tree, std::span<const FlatSurfel> surfels,
                                       const CameraView& camera, std::span<const SurfacePoint> visible,
                                       float spacing, size_t most) {
-    for (;;) {
-        std::vector<SidePlace> found = collect(tree, surfels, camera, visible, spacing, most);
+    constexpr size_t kMostCandidates = size_t{1} << 20;
+    for (;; spacing *= 1.5f) {
+        std::vector<SidePlace> found = collect(tree, surfels, camera, visible, spacing, kMostCandidates);
+        if (found.size() > kMostCandidates) continue;
+        found = thinned(std::move(found), camera, spacing);
         if (found.size() <= most) return found;
-        spacing *= 1.5f;
     }
 }
 

@@ -15,17 +15,21 @@ namespace lucarne::gi::environment {
 struct SidePlace {
     uint32_t side = 0;  ///< twice the slot, and one more for the back
     glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
-    float lift = 0;  ///< radius of the surfel at the position, m
-    float size = 0;  ///< radius of what the place stands for, m
+    float radius = 0;  ///< of the surfel at the position, m
+    float size = 0;    ///< radius of what the place stands for, m
 };
 
-/// Returns a place in the middle of what a side stands for: its surfel that is nearest to the middle, with
-/// the direction that most of its surfels share.
+/// Returns a place in the middle of what a side stands for: its surfel that is nearest to the middle. The
+/// normal is the direction that most of the surfels share if they are one surface, else that of the surfel.
 SidePlace place_of(const SurfelTree& tree, std::span<const FlatSurfel> surfels, uint32_t side);
 
-/// Returns the primary visible points (Harada 2014, section 3.4): the largest nodes of one surface that are
-/// no larger than `spacing` pixels, as far as the picture shows them. None is above another in the tree.
-/// There are at most `most`; with more, larger nodes are taken.
+/// Whether what a slot stands for is no larger in the picture of a camera than the distance of points that
+/// are so many pixels apart. What lies beside the picture counts likewise, by its distance.
+bool is_fine(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing);
+
+/// Returns the primary visible points (Harada 2014, section 3.4): those nodes of one surface that are just no
+/// larger than `spacing` pixels, as far as the picture shows them, without those for which another is near
+/// enough to stand for them. There are at most `most`; with more, larger nodes are taken.
 std::vector<SidePlace> primary_places(const SurfelTree& tree, std::span<const FlatSurfel> surfels,
                                       const CameraView& camera, std::span<const SurfacePoint> visible,
                                       float spacing, size_t most);

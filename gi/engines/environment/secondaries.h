@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -11,39 +12,34 @@
 namespace lucarne::gi::environment {
 
 /// The sides of slots that primary points see, and of which the irradiance has to be known (Harada 2014,
-/// section 3.3). Most of it follows from that of others: below a primary point all have the light of that
-/// point, and what has only known children has their mean. A side is twice its slot, and one more for the
-/// back.
+/// section 3.3). That of some follows from that of others: what is finer than the picture needs has the light
+/// of what it is part of, and what has only known children has their mean. A side is twice its slot, and one
+/// more for the back.
 class Secondaries {
  public:
-    /// Finds out which sides have to gather. `seen` as MicroBuffers::seen(); `primaries`: their sides, none
-    /// above another.
-    void choose(const SurfelTree& tree, std::span<const uint32_t> seen, std::span<const uint32_t> primaries);
-    /// Lets both sides of all surfels gather instead, to check choose().
+    /// Finds out which sides have to be known by themselves. `seen` as MicroBuffers::seen(); `fine(slot)`: it
+    /// needs no distinction of its parts. What is below a fine slot has to be fine as well.
+    void choose(const SurfelTree& tree, std::span<const uint32_t> seen,
+                const std::function<bool(size_t)>& fine);
+    /// Asks for both sides of all surfels instead, to check choose().
     void choose_all(const SurfelTree& tree);
 
-    /// The sides that have to gather.
-    std::span<const uint32_t> gathering() const { return gathering_; }
-    struct Counts {
-        size_t seen = 0;        ///< sides that primary points see
-        size_t after_up = 0;    ///< of these, without those with known children
-        size_t after_down = 0;  ///< of these, without those below primary points: those that gather
-    };
-    const Counts& counts() const { return counts_; }
+    /// The sides that have to be known by themselves.
+    std::span<const uint32_t> sides() const { return sides_; }
+    /// How many sides the primary points see.
+    size_t seen() const { return seen_; }
 
-    /// Returns the irradiance of all sides from that of primaries and of gathering(), in their orders. Sides
-    /// that nothing follows for have that of what is above or below them.
-    std::vector<glm::vec3> propagate(const SurfelTree& tree, std::span<const glm::vec3> at_primaries,
-                                     std::span<const glm::vec3> gathered) const;
+    /// Returns the irradiance of all sides from that of sides(), in their order. Sides that nothing follows
+    /// for have that of what is above or below them.
+    std::vector<glm::vec3> propagate(const SurfelTree& tree, std::span<const glm::vec3> light) const;
 
  private:
-    enum class State : uint8_t { unknown, seen, primary, copied, mean };
+    enum class State : uint8_t { unknown, seen, part, mean };
     void find_means(const SurfelTree& tree);
-    size_t count_gathering() const;
 
     std::vector<State> states_;
-    std::vector<uint32_t> primaries_, gathering_;
-    Counts counts_;
+    std::vector<uint32_t> sides_;
+    size_t seen_ = 0;
 };
 
 }  // namespace lucarne::gi::environment

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace lucarne::gi {
+
+/// Returns the axis along which a vector is longest: 0, 1 or 2.
+inline int largest_axis(const glm::vec3& v) {
+    const glm::vec3 size = glm::abs(v);
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+/// A grid of points in a rectangle across an axis of the coordinates, and which of them discs cover.
+class Coverage {
+ public:
+    /// `w`: the axis; the points lie in the plane through `origin` with the given normal, whose w is not 0.
+    Coverage(int w, const glm::vec3& low, const glm::vec3& high, const glm::vec3& origin,
+             const glm::vec3& normal)
+        : w_(w), u_((w + 1) % 3), v_((w + 2) % 3), low_(low), origin_(origin), normal_(normal) {
+        cell_ = (high - low) / static_cast<float>(kSide);
+    }
+    glm::vec3 point(int i, int j) const {
+        glm::vec3 p;
+        p[u_] = low_[u_] + cell_[u_] * (static_cast<float>(i) + 0.5f);
+        p[v_] = low_[v_] + cell_[v_] * (static_cast<float>(j) + 0.5f);
+        p[w_] = origin_[w_] -
+                ((p[u_] - origin_[u_]) * normal_[u_] + (p[v_] - origin_[v_]) * normal_[v_]) / normal_[w_];
+        return p;
+    }
+    /// Adds the points that a disc hides from whoever looks along `normal`, or along the axis if the disc
+    /// has its own `normal`.
+    void add(const glm::vec3& middle, float radius, const glm::vec3& normal) {
+        const Range columns = range(u_, middle, radius), rows = range(v_, middle, radius);
+        for (int j = rows.first; j < rows.last; ++j)
+            for (int i = columns.first; i < columns.last; ++i) {
+                glm::vec3 away = point(i, j) - middle;
+                away[w_] = -(away[u_] * normal[u_] + away[v_] * normal[v_]) / normal[w_];
+                if (glm::dot(away, away) <= radius * radius) covered_ |= uint64_t{1} << (kSide * j + i);
+            }
+    }
+    /// The covered points: bit 8 j + i is the point i along the axis after w, and j along the one after that.
+    uint64_t covered() const { return covered_; }
+    /// Returns the share of those points for which inside(point) is true that are covered.
+    template <class Inside>
+    float share(const Inside& inside) const {
+        int all = 0, hidden = 0;
+        for (int j = 0; j < kSide; ++j)
+            for (int i = 0; i < kSide; ++i)
+                if (inside(point(i, j))) {
+                    ++all;
+                    hidden += (covered_ >> (kSide * j + i) & 1) != 0;
+                }
+        return all > 0 ? static_cast<float>(hidden) / static_cast<float>(all) : 1;
+    }
+
+ private:
+    static constexpr int kSide = 8;
+    struct Range {
+        int first, last;
+    };
+    Range range(int axis, const glm::vec3& middle, float radius) const {
+        if (!(cell_[axis] > 0)) return {0, kSide};
+        const auto place = [&](float at) {
+            return static_cast<int>(std::clamp((at - low_[axis]) / cell_[axis] + 0.5f, 0.0f, 1.0f * kSide));
+        };
+        return {place(middle[axis] - radius), place(middle[axis] + radius)};
+    }
+
+    int w_, u_, v_;
+    glm::vec3 low_, origin_, normal_, cell_;
+    uint64_t covered_ = 0;
+};
+
+}  // namespace lucarne::gi
