@@ -8,6 +8,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "gi/engines/environment/options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/gather/gather_options.h"
@@ -31,6 +32,10 @@ void fine_buffers(EngineSettings& settings) {
     settings.set(kGatherEvery, 1);
     settings.set(kRadiosityLevel, 12);
 }
+void fine_caches(EngineSettings& settings) {
+    fine_buffers(settings);
+    settings.set(environment::kCacheSpacing, 3);
+}
 void many_paths(EngineSettings& settings) {
     settings.set(reference::kSamples, 256);
 }
@@ -48,6 +53,7 @@ struct Claims {
 constexpr Claims kClaims[] = {{"direct", false, false},
                               {"vpl", true, true, .03, .015, .04, .03, fine_vpls},
                               {"micro", true, true, .03, .015, .04, .03, fine_buffers},
+                              {"environment", true, true, .03, .015, .04, .03, fine_caches},
                               {"reference", true, true, .03, .003, .03, .01, many_paths}};
 
 class Engines : public testing::TestWithParam<Claims> {
