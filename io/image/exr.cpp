@@ -13,6 +13,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include "io/core/terminal.h"
@@ -61,6 +62,8 @@ class FileInput final : public Imf::IStream {
 
 constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 
+constexpr const char* kSurfaces = "lucarneSurfaces";  ///< name of the attribute that holds Image::surfaces
+
 constexpr size_t kMostReason = 120;    ///< bytes of the library's message
 constexpr int64_t kLinesAtOnce = 256;  ///< the longest chunk
 
@@ -105,6 +108,8 @@ Image decode(const ByteSource& file, uint64_t most_pixels) {
             throw std::runtime_error("its channels are subsampled");
     }
     Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
+    if (const auto* text = exr.header().findTypedAttribute<Imf::StringAttribute>(kSurfaces))
+        image.surfaces = text->value();
     // Memory grows with the data: a short file whose header promises many pixels fails at its first lines.
     for (int64_t line = 0; line < height; line += kLinesAtOnce) {
         const int64_t lines = std::min(kLinesAtOnce, height - line);
@@ -120,6 +125,7 @@ Image decode(const ByteSource& file, uint64_t most_pixels) {
 void encode(const Image& image, bool alpha, MemoryOutput& out) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
+    if (!image.surfaces.empty()) header.insert(kSurfaces, Imf::StringAttribute(image.surfaces));
     Imf::FrameBuffer source;
     char* first = reinterpret_cast<char*>(const_cast<glm::vec4*>(image.pixels.data()));  // only read
     for (size_t c = 0; c < (alpha ? 4u : 3u); ++c) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <glm/vec4.hpp>
@@ -14,6 +15,7 @@ namespace lucarne::io {
 struct Image {
     uint32_t width = 0, height = 0;
     std::vector<glm::vec4> pixels;
+    std::string surfaces{};  ///< which surfaces the picture shows, in words; empty: unknown. EXR keeps it
 };
 
 /// sRGB, three bytes per pixel; rows from the top.

@@ -14,6 +14,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/post/exposure.h"
 #include "gi/post/tone_map.h"
+#include "io/core/log.h"
 #include "io/core/terminal.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
@@ -74,6 +75,18 @@ Result<Pictures> read_pictures(const CompareOptions& options) {
         LUCARNE_ASSIGN(read.gbuffer, read_alike(options.gbuffer, &read.picture));
     }
     return read;
+}
+
+/// Warns if the pictures show different surfaces, for example those of two presets. On a scan the nearest
+/// point of many pixels is another one then, so the difference is no error of the engine.
+bool warn_of_other_surfaces(const Pictures& pictures) {
+    const std::string &shown = pictures.picture.surfaces, &expected = pictures.reference.surfaces;
+    if (shown.empty() || expected.empty() || shown == expected) return false;
+    log::warn(
+        "the pictures show different surfaces ({}; the reference: {}), and this counts as error: "
+        "render both with the same --preset and --points",
+        shown, expected);
+    return true;
 }
 
 /// Error metrics over all pixels or over the pixels of a mask.
@@ -163,6 +176,7 @@ Result<void> compare(const CompareOptions& options) {
     print("all", all);
     json report = to_json(all);
     report["exposure_ev"] = ev;
+    report["other_surfaces"] = warn_of_other_surfaces(pictures);
     const char* source = pictures.gbuffer ? "G-buffer" : "luminance";
     report["edges"] = {{"from", source}, {"pixels", 0}};
     if (std::find(edges.begin(), edges.end(), 1) != edges.end()) {

@@ -152,12 +152,19 @@ Result<void> check_layers(const RenderOptions& options) {
     return check_outputs(layer_paths(options.output, engine->info), options.overwrite, inputs_of(options));
 }
 
-Result<void> write_layers(const RenderOptions& options, const Pipeline& pipeline, ImageSize size) {
+/// Describes how finely the picture shows the surfaces. `compare` warns if two pictures differ in it.
+std::string surfaces_text(const CutBudgets& budgets) {
+    return fmt::format("points {} pixels apart, at most {}", budgets.pixel_spacing, budgets.view);
+}
+
+Result<void> write_layers(const RenderOptions& options, const Pipeline& pipeline, const Drawing& drawing) {
     const auto paths = layer_paths(options.output, pipeline.engine());
     auto layers = pipeline.layers();
     for (size_t i = 0; i < layers.size(); ++i)
-        LUCARNE_TRY(
-            io::write_exr(paths[i], {size.width, size.height, std::move(layers[i])}, options.overwrite));
+        LUCARNE_TRY(io::write_exr(paths[i],
+                                  {drawing.size.width, drawing.size.height, std::move(layers[i]),
+                                   surfaces_text(drawing.preset.budgets)},
+                                  options.overwrite));
     return {};
 }
 
@@ -202,12 +209,13 @@ Result<void> render(RenderOptions options) {
     LUCARNE_ASSIGN(const Rendered rendered, render_frames(*pipeline, request, options));
     const size_t pixels = size_t{drawing.size.width} * drawing.size.height;
     io::Image picture{drawing.size.width, drawing.size.height,
-                      pipeline->radiance().download_all<glm::vec4>(pixels)};
+                      pipeline->radiance().download_all<glm::vec4>(pixels),
+                      surfaces_text(drawing.preset.budgets)};
     const double mean = gi::mean_luminance(picture.pixels);
     LUCARNE_TRY(write_picture(options, kind, *pipeline, request.camera, std::move(picture)));
     if (!options.gbuffer.empty())
         LUCARNE_TRY(io::write_exr(options.gbuffer, rendered.gbuffer, options.overwrite, true));
-    if (options.layers) LUCARNE_TRY(write_layers(options, *pipeline, drawing.size));
+    if (options.layers) LUCARNE_TRY(write_layers(options, *pipeline, drawing));
     if (!options.json.empty()) {
         LUCARNE_TRY(write_file(options.json, json_text(report(rendered, *pipeline, drawing, mean)),
                                options.overwrite));

@@ -49,6 +49,18 @@ TEST(Exr, FloatsComeBackBitForBit) {
     EXPECT_TRUE(back->pixels == image.pixels);
 }
 
+TEST(Exr, TheDescriptionOfTheSurfacesComesBack) {
+    const TemporaryFolder folder;
+    Image image = noise(3, 2);
+    ASSERT_TRUE(write_exr(folder / "a.exr", image, false));
+    image.surfaces = "points 1 pixels apart";
+    ASSERT_TRUE(write_exr(folder / "b.exr", image, false));
+    const auto unknown = read_exr(folder / "a.exr"), known = read_exr(folder / "b.exr");
+    ASSERT_TRUE(unknown && known);
+    EXPECT_EQ(unknown->surfaces, "");
+    EXPECT_EQ(known->surfaces, image.surfaces);
+}
+
 TEST(Exr, WithoutAlphaOpacityIsOne) {
     const TemporaryFolder folder;
     const Image image = noise(3, 2);

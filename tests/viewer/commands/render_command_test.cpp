@@ -259,6 +259,28 @@ TEST_F(RenderCommand, CompareFindsNoDifferenceToItselfAndTheRightOneToAnother) {
     EXPECT_EQ(test::lucarne("compare " + at("small.exr") + " " + at("x.exr")).code, 3);
 }
 
+TEST_F(RenderCommand, CompareWarnsOfPicturesWithTheSurfacesOfAnotherPreset) {
+    ASSERT_EQ(render("still.exr", "--engine vpl --bounces 0 --preset high").code, 0);
+    const std::string reference = "--engine reference --bounces 0 --samples 2 --layers --preset ";
+    ASSERT_EQ(render("moving.exr", reference + "interactive").code, 0);
+    ASSERT_EQ(render("alike.exr", reference + "high").code, 0);
+    const auto compare = [&](const std::string& with) {
+        return test::lucarne("compare " + at("still.exr") + " " + with + " --overwrite --json " +
+                             at("compare.json"));
+    };
+    const auto halves = [&](const std::string& of) {
+        return "--halves " + at(of + ".a.exr") + " " + at(of + ".b.exr");
+    };
+    for (const std::string& with : {at("moving.exr"), halves("moving")}) {
+        EXPECT_THAT(compare(with).output, testing::HasSubstr("render both with the same --preset")) << with;
+        EXPECT_EQ(json("compare.json")["other_surfaces"], true) << with;
+    }
+    for (const std::string& with : {at("alike.exr"), halves("alike")}) {
+        EXPECT_THAT(compare(with).output, testing::Not(testing::HasSubstr("--preset"))) << with;
+        EXPECT_EQ(json("compare.json")["other_surfaces"], false) << with;
+    }
+}
+
 TEST_F(RenderCommand, GBufferOfThePictureIsWrittenAndTellsCompareWhereEdgesAre) {
     ASSERT_EQ(render("shown.exr", "--engine direct --gbuffer " + at("gbuffer.exr"), "160x120").code, 0);
     const auto gbuffer = exr("gbuffer.exr");
