@@ -109,7 +109,7 @@ Image decode(const ByteSource& file, uint64_t most_pixels) {
     }
     Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
     if (const auto* text = exr.header().findTypedAttribute<Imf::StringAttribute>(kSurfaces))
-        image.surfaces = text->value();
+        image.surfaces = shown(text->value(), kMostReason);
     // Memory grows with the data: a short file whose header promises many pixels fails at its first lines.
     for (int64_t line = 0; line < height; line += kLinesAtOnce) {
         const int64_t lines = std::min(kLinesAtOnce, height - line);
