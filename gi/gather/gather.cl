@@ -13,9 +13,12 @@
 #define ROW LUCARNE_ROW
 #define PIXELS (GRID * ROW)
 // Nodes are opened if their radius over their distance is larger. With buffers of 24^2 whole nodes are four pixels
-// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are noise.
+// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are noise. A curved
+// surface seen from the side may show either side; that of its plane would often be wrong.
 #define LARGEST_SURFACE fmin(4.0f / GRID, 0.2f)
-#define LARGEST_CLOUD fmin(2.0f / GRID, 0.1f)
+#define LARGEST_UNSURE fmin(2.0f / GRID, 0.1f)
+// The normals of a curved surface lean by about this times its thickness over its radius.
+#define LEAN 4.0f
 #define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
@@ -156,7 +159,9 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
         above &= dx * axis.x + dy * axis.y + dz * axis.z > -bound;
         int8 cloud = vload8(0, node->high_x) == (float8)(kCloud);
-        float8 limit = select((float8)(LARGEST_SURFACE), (float8)(LARGEST_CLOUD), cloud) * scale;
+        float8 plane = dx * nx + dy * ny + dz * nz;
+        int8 unsure = cloud | (plane * plane * bound * bound < LEAN * LEAN * thickness * thickness * distance2);
+        float8 limit = select((float8)(LARGEST_SURFACE), (float8)(LARGEST_UNSURE), unsure) * scale;
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         top = push(go, child, stack, top);
@@ -170,7 +175,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * pixels + 0.5f;
         float8 px = (dx * side.x + dy * side.y + dz * side.z) * nearer * pixels + (0.5f * GRID - 0.5f);
         float8 py = (dx * across.x + dy * across.y + dz * across.z) * nearer * pixels + (0.5f * GRID - 0.5f);
-        float left[8], right[8], upper[8], lower[8], x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], plane[8];
+        float left[8], right[8], upper[8], lower[8], x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], planes[8];
         int draws[8];
         vstore8(fmax(ceil(px - extent), 0.0f), 0, left);
         vstore8(fmin(floor(px + extent), GRID - 1.0f), 0, right);
@@ -182,7 +187,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         vstore8(nx, 0, axis_x);
         vstore8(ny, 0, axis_y);
         vstore8(nz, 0, axis_z);
-        vstore8(dx * nx + dy * ny + dz * nz, 0, plane);
+        vstore8(select(plane, distance2 * nearer, cloud), 0, planes);
         vstore8(drawn, 0, draws);
         for (int k = 0; k < 8; ++k) {
             if (!draws[k]) continue;
@@ -201,7 +206,7 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
                     int pixel = j * ROW + i;
                     float8 rx = vload8(0, rays + pixel), ry = vload8(0, rays + PIXELS + pixel);
                     float8 rz = vload8(0, rays + 2 * PIXELS + pixel);
-                    float8 t = plane[k] / (rx * axis_x[k] + ry * axis_y[k] + rz * axis_z[k]);
+                    float8 t = planes[k] / (rx * axis_x[k] + ry * axis_y[k] + rz * axis_z[k]);
                     float8 ox = rx * t - x[k], oy = ry * t - y[k], oz = rz * t - z[k];
                     float8 depth = vload8(0, depths + pixel);
                     uint8 held = vload8(0, slots + pixel);

@@ -21,7 +21,7 @@ constexpr float kBeside = 2;
 constexpr float kOffPlane = 0.25f;
 constexpr int kProbes = 5;  ///< along each axis of a node's picture
 /// A place stands for others that are nearer than this share of the spacing and whose normals agree so well.
-constexpr float kTooNear = 0.7f, kSameDirection = 0.85f;
+constexpr float kTooNear = 1, kSameDirection = 0.85f;
 
 /// Returns the depth at which a slot is seen in full, at least that of the near plane.
 float depth_of(const SurfelTree& tree, size_t slot, const CameraView& camera) {
