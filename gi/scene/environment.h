@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -10,6 +11,15 @@
 
 namespace lucarne::gi {
 
+/// What a sky of the daylight model is computed from (gi/scene/sky_model.h).
+struct SkySettings {
+    glm::dvec3 sun{0.0, 0.0, 1.0};  ///< unit direction to the sun
+    double turbidity = 3;           ///< haze: 2 very clear, 3 clear, 6 hazy, 10 like thin fog
+    double ground = .2;             ///< albedo of the ground, which fills the lower half
+
+    bool operator==(const SkySettings&) const = default;
+};
+
 /// Light from infinitely far away in every direction, as an equirectangular picture (gi/shared/environment.h
 /// defines its orientation). Its radiance is constant within a texel, so that sampling it and looking it up
 /// agree.
@@ -17,8 +27,9 @@ struct Environment {
     uint32_t width = 1, height = 1;
     std::vector<glm::vec3> texels{glm::vec3(0.0f)};  ///< W/(sr m^2), rows from the zenith down
     float rotation = 0;                              ///< about z, radians, counterclockwise from above
-    std::filesystem::path image;                     ///< the file it was read from; empty: uniform
+    std::filesystem::path image;                     ///< the file it was read from, if it was
     glm::dvec3 scale{1.0};                           ///< by which the picture's values were multiplied
+    std::optional<SkySettings> sky;                  ///< what the texels were computed from, if they were
 
     /// Returns the radiance from a unit direction, W/(sr m^2).
     glm::vec3 radiance(const glm::vec3& direction) const { return texels[texel(direction)]; }

@@ -47,6 +47,12 @@ void set_luminous_flux(SceneLight& light, double lumens, double metres_per_unit)
         light.strength = glm::dvec3(lumens / (kLumensPerWatt * watts(light, metres_per_unit)));
 }
 
+glm::dvec3 rec709_of(const glm::dvec3& xyz) {
+    return {glm::dot(xyz, glm::dvec3(3.2404542, -1.5371385, -0.4985314)),
+            glm::dot(xyz, glm::dvec3(-0.9692660, 1.8760108, 0.0415560)),
+            glm::dot(xyz, glm::dvec3(0.0556434, -0.2040259, 1.0572252))};
+}
+
 glm::dvec3 black_body_colour(double kelvin) {
     const double t = std::clamp(kelvin, kCoolest, kHottest), k = 1000 / t;
     const double x = t <= 4000 ? ((-0.2661239 * k - 0.2343589) * k + 0.8776956) * k + 0.179910
@@ -54,12 +60,7 @@ glm::dvec3 black_body_colour(double kelvin) {
     const double y = t <= 2222   ? ((-1.1063814 * x - 1.34811020) * x + 2.18555832) * x - 0.20219683
                      : t <= 4000 ? ((-0.9549476 * x - 1.37418593) * x + 2.09137015) * x - 0.16748867
                                  : ((3.0817580 * x - 5.87338670) * x + 3.75112997) * x - 0.37001483;
-    // CIE XYZ to linear Rec. 709 (IEC 61966-2-1).
-    const glm::dvec3 xyz(x / y, 1, (1 - x - y) / y);
-    const glm::dvec3 rgb(glm::dot(xyz, glm::dvec3(3.2404542, -1.5371385, -0.4985314)),
-                         glm::dot(xyz, glm::dvec3(-0.9692660, 1.8760108, 0.0415560)),
-                         glm::dot(xyz, glm::dvec3(0.0556434, -0.2040259, 1.0572252)));
-    const glm::dvec3 shown = glm::max(rgb, 0.0);
+    const glm::dvec3 shown = glm::max(rec709_of({x / y, 1, (1 - x - y) / y}), 0.0);
     return shown / std::max({shown.x, shown.y, shown.z});
 }
 

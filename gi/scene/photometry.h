@@ -18,6 +18,9 @@ double luminous_flux(const SceneLight& light, double metres_per_unit);
 /// Scales the strength to the given flux (or illuminance). A black light becomes white.
 void set_luminous_flux(SceneLight& light, double lumens, double metres_per_unit);
 
+/// Converts CIE 1931 XYZ to linear Rec. 709 (IEC 61966-2-1). Colours out of gamut get negative channels.
+glm::dvec3 rec709_of(const glm::dvec3& xyz);
+
 inline constexpr double kCoolest = 1667, kHottest = 25000;
 /// Returns the linear Rec. 709 colour of a black body, its largest channel 1. `kelvin` is clamped to
 /// kCoolest and kHottest. Source: Kim et al. 2002, US patent 7024034, cubic splines of the Planckian locus.

@@ -38,6 +38,7 @@ struct SceneLight {
     double radius = 1;  ///< disc
     bool on = true;
     std::optional<SunMoment> sun;  ///< directional: what position and target were computed from
+    bool daylight = false;         ///< directional: the strength is the sun's, by gi/scene/sky_model.h
 
     bool operator==(const SceneLight&) const = default;
 };

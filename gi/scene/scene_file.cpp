@@ -11,6 +11,7 @@
 #include "gi/scene/scene.h"
 #include "gi/scene/scene_lights.h"
 #include "gi/scene/scene_limits.h"
+#include "gi/scene/sky_model.h"
 #include "io/files/json.h"
 
 namespace lucarne::gi {
@@ -137,19 +138,21 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
     Scene scene;
     LUCARNE_TRY(read_exposure(root, scene));
     LUCARNE_ASSIGN(scene.background, root.vector("background", kRadiance, dvec3(0)));
+    LUCARNE_ASSIGN(const auto lights, root.objects("lights", kMostLights));
+    for (const JsonObject& object : lights) {
+        LUCARNE_ASSIGN(SceneLight light, read_light(object));
+        scene.lights.push_back(std::move(light));
+    }
     LUCARNE_ASSIGN(const auto environment, root.object("environment"));
     if (environment) {
         if (root.has("background"))
             return root.wrong("the environment is the background; leave this out", "background");
         JsonObject sky = *environment;
         LUCARNE_ASSIGN(scene.environment_on, sky.boolean("on", true));
-        LUCARNE_ASSIGN(scene.environment, read_environment(std::move(sky), folder));
+        LUCARNE_ASSIGN(scene.environment,
+                       read_environment(std::move(sky), folder, direction_to_sun(scene.lights)));
     }
-    LUCARNE_ASSIGN(const auto lights, root.objects("lights", kMostLights));
-    for (const JsonObject& object : lights) {
-        LUCARNE_ASSIGN(SceneLight light, read_light(object));
-        scene.lights.push_back(std::move(light));
-    }
+    update_daylight(scene);
     LUCARNE_TRY(read_materials(root, scene));
     LUCARNE_ASSIGN(const auto albedo, root.object("albedo"));
     if (albedo) {

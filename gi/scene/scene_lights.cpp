@@ -5,7 +5,9 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "gi/scene/degrees.h"
 #include "gi/scene/scene_limits.h"
+#include "gi/scene/sky_model.h"
 
 namespace lucarne::gi {
 namespace {
@@ -13,7 +15,7 @@ namespace {
 using glm::dvec3;
 
 constexpr JsonRange kConeDegrees{.1, 170}, kCapDegrees{0, 90}, kSide{1e-6, 1e9}, kTurnDegrees{-360, 360},
-    kLatitude{-90, 90}, kLongitude{-180, 180};
+    kLatitude{-90, 90}, kLongitude{-180, 180}, kTurbidity{kLeastTurbidity, kMostTurbidity};
 
 /// Reads where a light shines to: `target`, or `direction` from its position.
 Result<void> read_aim(JsonObject& object, SceneLight& light) {
@@ -72,9 +74,11 @@ Result<void> read_directional(JsonObject& object, SceneLight& light) {
         LUCARNE_ASSIGN(light.target, object.vector("direction", kCoordinate));
         if (light.target == dvec3(0)) return object.wrong("the light points nowhere", "direction");
     }
-    LUCARNE_ASSIGN(light.angular_radius, object.number("angular_radius", kCapDegrees, 0));
+    light.daylight = !object.has("irradiance");
+    const double usual = light.daylight ? degrees_of(kSunRadius) : 0;
+    LUCARNE_ASSIGN(light.angular_radius, object.number("angular_radius", kCapDegrees, usual));
     light.angular_radius = glm::radians(light.angular_radius);
-    LUCARNE_ASSIGN(light.strength, object.vector("irradiance", kRadiance));
+    LUCARNE_ASSIGN(light.strength, object.vector("irradiance", kRadiance, dvec3(0)));
     return {};
 }
 
@@ -94,6 +98,23 @@ Result<void> read_disc(JsonObject& object, SceneLight& light) {
     LUCARNE_ASSIGN(light.radius, object.number("radius", kSide));
     LUCARNE_ASSIGN(light.strength, object.vector("radiance", kRadiance));
     return {};
+}
+
+Result<SkySettings> read_sky(JsonObject object, const std::optional<dvec3>& sun) {
+    SkySettings sky;
+    LUCARNE_ASSIGN(sky.turbidity, object.number("turbidity", kTurbidity, sky.turbidity));
+    LUCARNE_ASSIGN(sky.ground, object.number("ground", kShare, sky.ground));
+    if (sun && object.has("direction"))
+        return object.wrong("the scene's directional light is the sun; leave this out", "direction");
+    if (!sun && !object.has("direction"))
+        return object.wrong("give the direction of its sun's light, or a directional light as its sun");
+    LUCARNE_ASSIGN(const dvec3 direction, object.vector("direction", kCoordinate, -sun.value_or(dvec3(0))));
+    if (direction == dvec3(0)) return object.wrong("the light comes from nowhere", "direction");
+    // A unit direction stays as it is, so that a scene that was written is read back the same.
+    const bool unit = std::abs(glm::dot(direction, direction) - 1) < 1e-12;
+    sky.sun = sun ? *sun : unit ? -direction : -glm::normalize(direction);
+    LUCARNE_TRY(object.finish());
+    return sky;
 }
 
 }  // namespace
@@ -122,10 +143,17 @@ Result<SceneLight> read_light(JsonObject object) {
 }
 
 Result<std::shared_ptr<const Environment>> read_environment(JsonObject object,
-                                                            const std::filesystem::path& folder) {
+                                                            const std::filesystem::path& folder,
+                                                            const std::optional<dvec3>& sun) {
     auto environment = std::make_shared<Environment>();
+    LUCARNE_ASSIGN(const auto sky, object.object("sky"));
+    if (sky) {
+        LUCARNE_ASSIGN(environment->sky, read_sky(*sky, sun));
+        LUCARNE_TRY(object.finish());
+        return environment;
+    }
     LUCARNE_ASSIGN(const std::string image, object.text("image", ""));
-    if (image.empty() && !object.has("radiance")) return object.wrong("give a radiance or an image");
+    if (image.empty() && !object.has("radiance")) return object.wrong("give a sky, a radiance or an image");
     LUCARNE_ASSIGN(const dvec3 radiance, object.vector("radiance", kRadiance, dvec3(1)));
     LUCARNE_ASSIGN(const double rotation, object.number("rotation", kTurnDegrees, 0));
     LUCARNE_TRY(object.finish());

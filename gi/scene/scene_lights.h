@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "gi/scene/environment.h"
 #include "gi/scene/scene.h"
@@ -14,8 +15,10 @@ namespace lucarne::gi {
 Result<SceneLight> read_light(JsonObject object);
 /// Turns a directional light that has a place and a time to the sun's position then.
 void follow_sun(SceneLight& light);
-/// Paths of pictures are relative to `folder`.
+/// Paths of pictures are relative to `folder`. `sun` is the direction to the scene's sun. A sky of the
+/// daylight model gets its picture from update_daylight().
 Result<std::shared_ptr<const Environment>> read_environment(JsonObject object,
-                                                            const std::filesystem::path& folder);
+                                                            const std::filesystem::path& folder,
+                                                            const std::optional<glm::dvec3>& sun);
 
 }  // namespace lucarne::gi

@@ -9,6 +9,7 @@
 #include "gi/scene/look_file.h"
 #include "gi/scene/render_settings_file.h"
 #include "gi/scene/scene.h"
+#include "gi/scene/sky_model.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
 
@@ -56,7 +57,8 @@ Json write_light(const SceneLight& light) {
             put(written, "softness", light.softness, plain.softness);
             break;
         case LightKind::directional:
-            if (light.angular_radius != 0) written["angular_radius"] = degrees_of(light.angular_radius);
+            if (light.angular_radius != (light.daylight ? kSunRadius : 0))
+                written["angular_radius"] = degrees_of(light.angular_radius);
             break;
         case LightKind::rectangle:
             written["width"] = light.width;
@@ -69,7 +71,8 @@ Json write_light(const SceneLight& light) {
         case LightKind::point:
             break;
     }
-    written[kStrengths[static_cast<size_t>(light.kind)]] = vector(light.strength);
+    if (!sun || !light.daylight)
+        written[kStrengths[static_cast<size_t>(light.kind)]] = vector(light.strength);
     return written;
 }
 
@@ -98,9 +101,23 @@ Json write_camera(const SceneCamera& camera) {
     return written;
 }
 
-Json write_environment(const Environment& environment, bool on, const std::filesystem::path& folder) {
+Json write_sky(const SkySettings& sky, bool has_sun) {
+    const SkySettings plain;
     Json written = Json::object();
-    put(written, "on", on, true);
+    put(written, "turbidity", sky.turbidity, plain.turbidity);
+    put(written, "ground", sky.ground, plain.ground);
+    if (!has_sun) written["direction"] = vector(-sky.sun);
+    return written;
+}
+
+Json write_environment(const Environment& environment, const Scene& scene,
+                       const std::filesystem::path& folder) {
+    Json written = Json::object();
+    put(written, "on", scene.environment_on, true);
+    if (environment.sky) {
+        written["sky"] = write_sky(*environment.sky, direction_to_sun(scene.lights).has_value());
+        return written;
+    }
     if (!environment.image.empty()) {
         const auto seen = std::filesystem::absolute(environment.image)
                               .lexically_normal()
@@ -158,7 +175,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     put_object("render", write_render_settings(scene.render));
     put_object("exposure", write_exposure(scene));
     if (scene.environment)
-        written["environment"] = write_environment(*scene.environment, scene.environment_on, folder);
+        written["environment"] = write_environment(*scene.environment, scene, folder);
     else
         put(written, "background", scene.background, dvec3(0));
     for (const SceneLight& light : scene.lights) written["lights"].push_back(write_light(light));
