@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/scene/scene_lights.h"
+#include "gi/scene/sky_model.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -52,7 +53,7 @@ void add_light(const Lighting& model, gi::LightKind kind) {
     if (kind == gi::LightKind::directional) {
         light.target -= light.position;
         light.position = glm::dvec3(0);
-        light.angular_radius = 0.265 * std::numbers::pi / 180;  // the sun's
+        light.angular_radius = gi::kSunRadius;
     }
     if (kind == gi::LightKind::rectangle) light.width = light.height = size / 4;
     if (kind == gi::LightKind::disc) light.radius = size / 8;
@@ -105,6 +106,19 @@ void set_sun(const Lighting& model, const std::optional<gi::SunMoment>& sun) {
     if (!light || light->kind != gi::LightKind::directional) return;
     light->sun = sun;
     gi::follow_sun(*light);
+    model.view.scene_changed();
+}
+
+void set_clear_sky(const Lighting& model, const gi::SkySettings& sky) {
+    gi::Scene& scene = model.view.scene;
+    const bool had_one = scene.environment && scene.environment->sky;
+    const auto sun = std::ranges::find(scene.lights, gi::LightKind::directional, &gi::SceneLight::kind);
+    // So that sun and sky agree; the user may give the sun another strength later.
+    if (!had_one && sun != scene.lights.end()) sun->daylight = true;
+    auto made = std::make_shared<gi::Environment>();
+    made->sky = sky;
+    scene.environment = std::move(made);
+    scene.environment_on |= !had_one;
     model.view.scene_changed();
 }
 

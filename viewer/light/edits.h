@@ -18,4 +18,8 @@ void switch_selected_light(const Lighting& model);
 /// its current direction.
 void set_sun(const Lighting& model, const std::optional<gi::SunMoment>& sun);
 
+/// Lights the scene by the sky of the daylight model, which follows the scene's sun. The sun gets the
+/// strength of daylight. Without a sun, `sky.sun` counts.
+void set_clear_sky(const Lighting& model, const gi::SkySettings& sky);
+
 }  // namespace lucarne::viewer

@@ -91,7 +91,9 @@ bool edit_strength(const Lighting& model, gi::SceneLight& light) {
         ImGui::SetTooltip(
             "179 lm a watt of white light in the visible band (Ward & Shakespeare 1998),\n"
             "colours weighted by Rec. 709's luminance");
-    return edit_colour(model, light) || changed;
+    changed |= edit_colour(model, light);
+    if (changed) light.daylight = false;
+    return changed;
 }
 
 bool edit_shape(gi::SceneLight& light, double scene_size) {

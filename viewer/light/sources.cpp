@@ -9,6 +9,7 @@
 #include <imgui_stdlib.h>
 
 #include "gi/scene/colour_map.h"
+#include "gi/scene/sky_model.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
 #include "viewer/ui/widgets.h"
@@ -43,6 +44,11 @@ bool edit_moment(gi::Moment& moment) {
     time.year = date[0], time.month = date[1], time.day = date[2];
     moment = gi::moment_of(time, moment.ahead);
     return true;
+}
+
+bool edit_share(const char* label, double& value, double least, double most) {
+    return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &least, &most, "%.2f",
+                               ImGuiSliderFlags_AlwaysClamp);
 }
 
 glm::vec3 scaled_to_one(const glm::dvec3& colour, float& most) {
@@ -81,6 +87,17 @@ void edit_even_sky(const Lighting& model) {
     });
 }
 
+void edit_clear_sky(const Lighting& model) {
+    gi::SkySettings sky = *model.view.scene.environment->sky;
+    bool changed = edit_share("Turbidity", sky.turbidity, gi::kLeastTurbidity, gi::kMostTurbidity);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("haze: 2 very clear, 3 clear, 6 hazy, 10 like thin fog");
+    changed |= edit_share("Ground", sky.ground, 0, 1);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("albedo of the ground below the horizon");
+    if (!gi::direction_to_sun(model.view.scene.lights))
+        ImGui::TextDisabled("The scene has no sun to follow.");
+    if (changed) set_clear_sky(model, sky);
+}
+
 /// Lets the user choose a sky picture, which a thread reads.
 void choose_sky(LightModel& tools) {
     const bool entered = ImGui::InputTextWithHint("##image", "sky.exr or sky.hdr", &tools.sky_image,
@@ -116,6 +133,10 @@ void choose_class(gi::SceneMaterial& material, const Lighting& model) {
 
 void draw_sun(const Lighting& model) {
     gi::SceneLight& light = *model.selected_light();
+    if (ImGui::Checkbox("Daylight", &light.daylight)) model.view.scene_changed();
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("strength and colour of the sun through the atmosphere (Preetham et al. 1999)");
+    ImGui::SameLine();
     bool by_time = light.sun.has_value();
     if (ImGui::Checkbox("By place and time", &by_time))
         set_sun(model, by_time ? std::optional(gi::SunMoment{}) : std::nullopt);
@@ -152,6 +173,7 @@ void draw_sky(const Lighting& model) {
             model.view.scene.environment_on = true;
             model.view.scene_changed();
         }
+        ImGui::SameLine();
     } else {
         if (ImGui::Checkbox("On", &model.view.scene.environment_on)) model.view.scene_changed();
         ImGui::SameLine();
@@ -160,7 +182,14 @@ void draw_sky(const Lighting& model) {
             model.view.scene_changed();
         }
     }
-    if (model.view.scene.environment) {
+    if (!model.view.scene.environment || !model.view.scene.environment->sky) {
+        if (ImGui::Button("Sky from sun")) set_clear_sky(model, {});
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("the clear sky of the place and hour of the first sun (Preetham et al. 1999)");
+    }
+    if (model.view.scene.environment && model.view.scene.environment->sky) {
+        edit_clear_sky(model);
+    } else if (model.view.scene.environment) {
         if (model.view.scene.environment->image.empty())
             edit_even_sky(model);
         else

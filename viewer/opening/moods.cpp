@@ -13,8 +13,8 @@
 #include "gi/registry.h"
 #include "gi/scene/photometry.h"
 #include "gi/scene/scene_lights.h"
+#include "gi/scene/sky_model.h"
 #include "io/core/options.h"
-#include "viewer/opening/clear_day.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -33,7 +33,7 @@ constexpr std::array kMoods = {
 constexpr double kBulb = 3600, kGallery = 4300, kLowSun = 3400, kNoonSun = 5800;
 
 constexpr double kLampRadius = .25;  ///< m
-constexpr double kSunRadius = glm::radians(.265);
+constexpr double kDuskBegins = 12;   ///< degrees: below this elevation of the sun the backdrop turns to dusk
 
 gi::Backdrop gradient(const glm::dvec3& top, const glm::dvec3& bottom) {
     return {gi::Backdrop::Kind::gradient, top, bottom};
@@ -48,6 +48,13 @@ std::shared_ptr<const gi::Environment> sky_of(const glm::dvec3& radiance) {
     auto sky = std::make_shared<gi::Environment>();
     sky->texels = {glm::vec3(radiance)};
     sky->scale = radiance;
+    return sky;
+}
+
+/// A sky of the daylight model, whose picture update_daylight() makes.
+std::shared_ptr<const gi::Environment> clear_sky() {
+    auto sky = std::make_shared<gi::Environment>();
+    sky->sky.emplace();
     return sky;
 }
 
@@ -77,7 +84,7 @@ glm::dvec3 north_west(double elevation) {
             std::sin(rise)};
 }
 
-gi::SceneLight sun_from(const Site& site, const glm::dvec3& towards, const glm::dvec3& irradiance) {
+gi::SceneLight sun_from(const Site& site, const glm::dvec3& towards, const glm::dvec3& irradiance = {}) {
     gi::SceneLight sun;
     sun.kind = gi::LightKind::directional;
     sun.name = "sun";
@@ -85,7 +92,7 @@ gi::SceneLight sun_from(const Site& site, const glm::dvec3& towards, const glm::
     sun.target = middle_of(site);
     sun.position = sun.target + towards * std::max(away, 1e-3);
     sun.strength = irradiance;
-    sun.angular_radius = kSunRadius;
+    sun.angular_radius = gi::kSunRadius;
     return sun;
 }
 
@@ -144,6 +151,7 @@ struct Light {
     glm::dvec3 sky{0.0};
     gi::Backdrop backdrop;
     double kelvin = gi::kDaylight;  ///< colour temperature of the main light
+    bool daylight = false;          ///< the sky is that of the daylight model
 };
 
 bool in_rooms(const Site& site) {
@@ -157,8 +165,9 @@ Light daylight(const Site& site, const gi::SceneCamera& camera) {
         const glm::dvec3 ahead = site.inside->ahead;
         towards = normalize(glm::dvec3(-ahead.y, ahead.x, .7) - .4 * ahead);
     }
-    const ClearDay day = clear_day(glm::degrees(std::asin(towards.z)));
-    return {{sun_from(site, towards, day.sun)}, day.sky, kSky};
+    gi::SceneLight sun = sun_from(site, towards);
+    sun.daylight = true;
+    return {{sun}, {}, kSky, gi::kDaylight, true};
 }
 
 Light evening(const Site& site, const gi::SceneCamera& camera) {
@@ -256,7 +265,12 @@ void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCame
             break;
     }
     scene.lights = std::move(light.lights);
-    scene.environment = light.sky == glm::dvec3(0.0) ? nullptr : sky_of(light.sky);
+    const bool clear = scene.environment && scene.environment->sky;
+    if (!light.daylight)
+        scene.environment = light.sky == glm::dvec3(0.0) ? nullptr : sky_of(light.sky);
+    else if (!clear)  // else the haze stays that the user has chosen
+        scene.environment = clear_sky();
+    gi::update_daylight(scene);
     scene.environment_on = true;
     scene.look.backdrop = light.backdrop;
     scene.exposure_ev.reset();
@@ -267,16 +281,17 @@ void set_daytime(gi::Scene& scene, const gi::SunMoment& moment) {
     const auto sun = std::ranges::find(scene.lights, gi::LightKind::directional, &gi::SceneLight::kind);
     if (sun == scene.lights.end()) return;
     sun->sun = moment;
+    sun->daylight = true;
     gi::follow_sun(*sun);
+    if (!scene.environment || !scene.environment->sky) scene.environment = clear_sky();
+    gi::update_daylight(scene);
     const double elevation = gi::solar_position(moment).elevation;
-    const ClearDay day = clear_day(elevation);
-    sun->strength = day.sun;
-    scene.environment = sky_of(day.sky);
+    const double dusk = std::clamp(1 - elevation / kDuskBegins, 0.0, 1.0);
     const double night = std::clamp(-elevation / 12, 0.0, 1.0);
     const auto between = [](const gi::Backdrop& a, const gi::Backdrop& b, double t) {
         return gradient(glm::mix(a.top, b.top, t), glm::mix(a.bottom, b.bottom, t));
     };
-    scene.look.backdrop = between(between(kSky, kDusk, day.dusk), kDark, night);
+    scene.look.backdrop = between(between(kSky, kDusk, dusk), kDark, night);
 }
 
 }  // namespace lucarne::viewer

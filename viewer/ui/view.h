@@ -8,6 +8,7 @@
 
 #include <glm/vector_relational.hpp>
 
+#include "gi/scene/sky_model.h"
 #include "viewer/camera/camera.h"
 #include "viewer/camera/glide.h"
 #include "viewer/camera/navigation.h"
@@ -49,8 +50,11 @@ struct View {
     gi::DeviceInfo device;
     double scale = 1;  ///< scale of the picture while something moves
 
-    /// Call after every change of `scene`.
-    void scene_changed() { ++scene_version; }
+    /// Call after every change of `scene`. Daylight follows the sun.
+    void scene_changed() {
+        gi::update_daylight(scene);
+        ++scene_version;
+    }
     /// Call instead of scene_changed() after changes that neither move anything nor change light: exposure,
     /// tone curve, the border of a comparison.
     void shown_changed() {

@@ -59,11 +59,48 @@ TEST(LightEdits, TheHourThatWasChosenStaysWhenTheLightIsMadeAnew) {
     gi::SunMoment moment;
     moment.latitude = 10;
     set_daytime(model.view.scene, moment);
+    gi::SkySettings hazy;
+    hazy.turbidity = 5;
+    set_clear_sky(model.lighting(), hazy);
     const auto chosen = model.view.scene.lights;
     light_for_place(model.lighting());
     ASSERT_TRUE(model.view.scene.lights.front().sun);
     EXPECT_EQ(model.view.scene.lights.front().sun->latitude, 10);
     EXPECT_EQ(model.view.scene.lights.front().strength, chosen.front().strength);
+    EXPECT_EQ(model.view.scene.environment->sky->turbidity, 5);
+}
+
+TEST(LightEdits, TheSkyFollowsTheSunHoweverThatIsMoved) {
+    LitView model;
+    add_light(model.lighting(), gi::LightKind::directional);
+    gi::SceneLight& sun = model.view.scene.lights.front();
+    set_clear_sky(model.lighting(), {});
+    const auto sky_sun = [&] { return model.view.scene.environment->sky->sun; };
+    const auto to_sun = [&] { return glm::normalize(sun.position - sun.target); };
+    EXPECT_TRUE(sun.daylight) << "sun and sky agree";
+    EXPECT_LT(glm::distance(sky_sun(), to_sun()), 1e-9);
+    set_sun(model.lighting(), gi::SunMoment{});
+    EXPECT_LT(glm::distance(sky_sun(), to_sun()), 1e-9);
+    const dvec3 noon = sun.strength;
+    gi::SunMoment later;
+    later.time.seconds += 8 * 3600;
+    set_sun(model.lighting(), later);
+    EXPECT_LT(glm::distance(sky_sun(), to_sun()), 1e-9);
+    EXPECT_LT(sun.strength.y, .7 * noon.y);
+    move_light(sun, Part::sky, {-1, 0, .1}, LightSphere{});
+    model.view.scene_changed();
+    EXPECT_LT(sky_sun().x, -.9);
+    sun.daylight = false;
+    sun.strength = dvec3(5);
+    gi::SkySettings hazy;
+    hazy.turbidity = 6;
+    set_clear_sky(model.lighting(), hazy);
+    EXPECT_EQ(sun.strength, dvec3(5)) << "the user's own strength stays";
+    EXPECT_EQ(model.view.scene.environment->sky->turbidity, 6);
+    remove_light(model.lighting());
+    ASSERT_TRUE(model.view.scene.environment);
+    EXPECT_LT(sky_sun().x, -.9) << "the sky stays when its sun has gone";
+    EXPECT_TRUE(gi::parse_scene(gi::write_scene(model.view.scene), "sky.json"));
 }
 
 TEST(LightEdits, ASceneHoldsNoMoreLightsThanItsFileMay) {
