@@ -241,8 +241,10 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     {
         const TimedPass pass(frame, "micro-buffers");
         std::vector<GatherPoint> points;
-        for (const SidePlace& place : primaries)
+        for (const SidePlace& place : primaries) {
             points.push_back(point_at(place.position, place.normal, place.radius, mix64(seed_, place.side)));
+            points.back().viewer = place.viewer;
+        }
         LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, s[kMicroBuffer], seed_, buffers_,
                                              frame.stop));
     }

@@ -31,26 +31,30 @@ float depth_of(const SurfelTree& tree, size_t slot, const CameraView& camera) {
     return std::max(distance - node.bound[slot % 8], camera.origin.w);
 }
 
-/// Whether a pixel shows a surface of a node, which is `radius` pixels in size about `at`.
-bool shows(const CameraView& camera, std::span<const SurfacePoint> visible, const SidePlace& place,
-           const glm::vec2& at, float radius) {
+/// Returns the point nearest to the middle of a place that pixels show of its node, which is `radius` pixels
+/// in size about `at`; null if they show none.
+const SurfacePoint* shown(const CameraView& camera, std::span<const SurfacePoint> visible,
+                          const SidePlace& place, const glm::vec2& at, float radius) {
     const float reach = std::min(radius, 64.0f);
+    const SurfacePoint* found = nullptr;
+    float least = 4 * place.size * place.size;
     for (int j = 0; j < kProbes; ++j)
         for (int i = 0; i < kProbes; ++i) {
-            const glm::vec2 pixel =
-                at + reach * (2.0f / (kProbes - 1) * glm::vec2(static_cast<float>(i), static_cast<float>(j)) -
-                              1.0f);
+            const glm::vec2 offset(static_cast<float>(i), static_cast<float>(j));
+            const glm::vec2 pixel = at + reach * (2.0f / (kProbes - 1) * offset - 1.0f);
             if (!(pixel.x >= 0 && pixel.y >= 0)) continue;
             const auto x = static_cast<uint32_t>(pixel.x), y = static_cast<uint32_t>(pixel.y);
             if (x >= camera.width || y >= camera.height) continue;
             const SurfacePoint& seen = visible[size_t{y} * camera.width + x];
             if (!(seen.radius > 0)) continue;
-            const glm::vec3 offset = seen.position - place.position;
-            if (glm::dot(offset, offset) < 4 * place.size * place.size &&
-                std::abs(glm::dot(offset, place.normal)) < kOffPlane * place.size + seen.radius)
-                return true;
+            const glm::vec3 away = seen.position - place.position;
+            if (std::abs(glm::dot(away, place.normal)) >= kOffPlane * place.size + seen.radius) continue;
+            if (const float distance2 = glm::dot(away, away); distance2 < least) {
+                least = distance2;
+                found = &seen;
+            }
         }
-    return false;
+    return found;
 }
 
 /// Collects the places that the picture shows; stops beyond `most`.
@@ -87,7 +91,13 @@ std::vector<SidePlace> collect(const SurfelTree& tree, std::span<const FlatSurfe
             if (!is_parallel(camera) && depth <= 0) continue;
             const uint32_t back = glm::dot(axis_of(node, k), toward_viewer(camera, middle)) < 0;
             SidePlace primary = place_of(tree, surfels, 2 * slot + back);
-            if (!shows(camera, visible, primary, place, radius)) continue;
+            const SurfacePoint* seen = shown(camera, visible, primary, place, radius);
+            if (!seen) continue;
+            // Pixels have smoother normals than surfels, which would see parts of their own surface.
+            primary.position = seen->position;
+            primary.normal = seen->normal;
+            primary.viewer = seen->viewer;
+            primary.radius = seen->radius;
             primary.size = std::max(primary.size, spacing / kRadiiApart * pixel_height(camera, depth));
             found.push_back(primary);
         }
@@ -153,7 +163,12 @@ SidePlace place_of(const SurfelTree& tree, std::span<const FlatSurfel> surfels, 
         normal = glm::dot(own, normal) < 0 ? -own : own;
     }
     if ((side & 1) != 0) normal = -normal;
-    return {side, {surfel.x, surfel.y, surfel.z}, normal, surfel.radius, size};
+    return {.side = side,
+            .position = {surfel.x, surfel.y, surfel.z},
+            .normal = normal,
+            .viewer = glm::vec3(0.0f),
+            .radius = surfel.radius,
+            .size = size};
 }
 
 bool is_fine(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing) {

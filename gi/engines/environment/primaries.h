@@ -15,8 +15,9 @@ namespace lucarne::gi::environment {
 struct SidePlace {
     uint32_t side = 0;  ///< twice the slot, and one more for the back
     glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
-    float radius = 0;  ///< of the surfel at the position, m
-    float size = 0;    ///< radius of what the place stands for, m
+    glm::vec3 viewer{0.0f};  ///< unit, to the viewer whose picture shows the position; zero: none
+    float radius = 0;        ///< of the surfel at the position, m
+    float size = 0;          ///< radius of what the place stands for, m
 };
 
 /// Returns a place in the middle of what a side stands for: its surfel that is nearest to the middle. The
