@@ -36,7 +36,8 @@ constexpr EngineInfo kInfo{
     .label = "Daylight",
     .description = "light of the sky and between surfaces, gathered at visible points, on OpenCL",
     .options = kOptions,
-    .needs = {.light_cut = true, .light_views = true, .opencl = true}};
+    .needs = {.light_cut = true, .light_views = true, .opencl = true},
+    .reports_progress = true};
 
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 341 MiB
@@ -67,13 +68,15 @@ class EnvironmentEngine final : public Engine {
     Result<void> repair(Frame& frame, std::span<const SurfacePoint> surfaces, std::vector<uint32_t> lonely,
                         Gathered what, std::vector<glm::vec4>& light);
 
+    void report(Frame& frame, double share);
+
     TreeLighting lighting_;
     MicroBuffers buffers_, repairs_;
     Secondaries secondaries_;
     std::vector<Cache> caches_;
     GatherCounts lobes_;
     uint64_t seed_ = 0;
-    size_t primaries_ = 0, gathering_ = 0, repaired_ = 0;
+    size_t primaries_ = 0, gathering_ = 0, repaired_ = 0, reported_ = 0;
 };
 
 /// What pixels show: of the light that surfels send out, and of the sky.
@@ -91,6 +94,14 @@ GatherPoint point_at(const glm::vec3& position, const glm::vec3& normal, float l
             .exponent = 0,
             .axis = normal,
             .scale = 1};
+}
+
+/// Reports this share of the picture as finished.
+void EnvironmentEngine::report(Frame& frame, double share) {
+    if (!frame.progress) return;
+    const auto pixels = static_cast<size_t>(share * frame.camera.width * frame.camera.height);
+    frame.progress->add(pixels - reported_);
+    reported_ = pixels;
 }
 
 /// Sets the light of the surfels, and what they reflect of the sky and of each other up to the last bounce.
@@ -249,8 +260,10 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
                                              frame.stop));
     }
     if (frame.stopped()) return {};
+    report(frame, 0.4);
     if (wants_indirect(s)) LUCARNE_TRY(light_secondaries(frame, primaries));
     if (frame.stopped()) return {};
+    report(frame, 0.8);
     const Gathered what = shown(s, lighting_.has_sky());
     LUCARNE_TRY(add_caches(frame, primaries, what));
     std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
@@ -273,12 +286,14 @@ Result<void> EnvironmentEngine::render(Frame& frame) {
     lighting_.begin(frame);
     frame.gl.radiance.clear(0);
     seed_ = mix64(frame.settings[kSeed], frame.index);
-    primaries_ = gathering_ = repaired_ = 0;
+    primaries_ = gathering_ = repaired_ = reported_ = 0;
     secondaries_ = {};
     const bool direct = wants_direct(frame.settings);
     if (wants_indirect(frame.settings) || (direct && lighting_.has_sky())) LUCARNE_TRY(gather(frame));
-    if (frame.stopped() || !direct) return {};
-    return lighting_.add_direct(frame);
+    if (frame.stopped()) return {};
+    if (direct) LUCARNE_TRY(lighting_.add_direct(frame));
+    report(frame, 1);
+    return {};
 }
 
 std::vector<std::pair<std::string, double>> EnvironmentEngine::stats() const {

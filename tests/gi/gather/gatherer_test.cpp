@@ -105,6 +105,38 @@ TEST_F(GathererTest, SheetHidesWhatIsBehindIt) {
     EXPECT_EQ(gather(surfels, light, std::vector{point})[0].x, 0);
 }
 
+TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
+    const auto surfels = flat::noisy_room(3000);
+    std::vector<SideLight> light(surfels.size());
+    for (size_t i = 0; i < light.size(); ++i)
+        light[i] = {glm::vec3(static_cast<float>(i % 7)), glm::vec3(static_cast<float>(i % 5))};
+    const SurfelTree tree = build_tree(surfels);
+    std::vector<SideLight> slots;
+    pull_light(tree, light, slots);
+    Gatherer gatherer;
+    ASSERT_TRUE(gatherer.set_tree(*opencl_, tree));
+    ASSERT_TRUE(gatherer.set_light(*opencl_, slots));
+    std::vector<GatherPoint> points = floor_points(1, 0.05f, 100);
+    for (GatherPoint& point : points) point.position.z = 0.2f;
+    std::vector<glm::vec4> gathered(points.size());
+    ASSERT_TRUE(gatherer.gather(*opencl_, Gathered::light_of_surfels, points, 16, 1, gathered));
+    MicroBuffers buffers;
+    ASSERT_TRUE(gatherer.see(*opencl_, points, 16, 1, buffers));
+    const auto shaded = gatherer.shade(*opencl_, Gathered::light_of_surfels, buffers);
+    ASSERT_TRUE(shaded) << shaded.error().line();
+    for (size_t i = 0; i < points.size(); ++i)
+        EXPECT_NEAR(shaded->at(i).on(points[i].normal).y, gathered[i].y, 1e-4f * gathered[i].y);
+    const auto seen = buffers.seen();
+    ASSERT_TRUE(seen);
+    for (const uint32_t code : *seen)
+        if (code < kSeesSky) {
+            ASSERT_NE(tree.nodes[code / 16].child[code / 2 % 8], kNoChild);
+        }
+    const auto nearness = buffers.nearness();
+    ASSERT_TRUE(nearness);
+    for (const float near : *nearness) EXPECT_GT(near, 1 / 1.75f);
+}
+
 TEST_F(GathererTest, EmptyTreeSendsNothing) {
     const auto results = gather({}, {}, floor_points(1, 0.01f, 3));
     for (const glm::vec4& r : results) EXPECT_EQ(r, glm::vec4(0, 0, 0, 1));

@@ -1,0 +1,89 @@
+#include "gi/engines/environment/caches.h"
+
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "tests/gi/engines/analytic_frame.h"
+
+namespace lucarne::gi::environment {
+namespace {
+
+LightVectors even_light(float radiance, const glm::vec3& normal) {
+    const glm::vec4 vector(radiance * normal, 0);
+    return {vector, vector, vector};
+}
+
+Cache cache_at(const glm::vec3& position, float radiance, float reach = 0.5f) {
+    return {position, {0, 0, 1}, reach, even_light(radiance, {0, 0, 1})};
+}
+
+SurfacePoint point_at(const glm::vec3& position, const glm::vec3& normal = {0, 0, 1}) {
+    return {.position = position, .normal = normal, .radius = 0.001f};
+}
+
+const CameraView kCamera = scenes::look({0, 0, 5}, {0, 0, 0}, 0.5f, 64);
+
+std::optional<glm::vec3> light_at(std::span<const Cache> caches, const SurfacePoint& at) {
+    float depth = 0;
+    const glm::vec2 pixel = view_place(kCamera, at.position, depth);
+    return CacheTiles(kCamera, caches)
+        .light_at(at, static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y));
+}
+
+TEST(Caches, LightBetweenEqualCachesIsTheirs) {
+    std::vector<Cache> caches;
+    for (int i = -5; i <= 5; ++i)
+        for (int j = -5; j <= 5; ++j) caches.push_back(cache_at(0.3f * glm::vec3(i, j, 0), 2));
+    for (float x = -1; x < 1; x += 0.13f) {
+        const auto found = light_at(caches, point_at({x, 0.5f * x, 0}));
+        ASSERT_TRUE(found) << x;
+        EXPECT_NEAR(found->y, 2, 1e-5);
+    }
+}
+
+TEST(Caches, LightGoesOverFromOneToTheNextWithoutSteps) {
+    const std::vector<Cache> caches = {cache_at({0, 0, 0}, 1), cache_at({0.4f, 0, 0}, 3)};
+    float last = light_at(caches, point_at({0, 0, 0}))->x;
+    for (float x = 0; x < 0.4f; x += 0.01f) {
+        const float now = light_at(caches, point_at({x, 0, 0}))->x;
+        EXPECT_GE(now, last - 1e-5f);
+        EXPECT_LT(now - last, 0.2f) << x;
+        last = now;
+    }
+}
+
+TEST(Caches, WhatIsFarOrTurnedAwayOrInFrontDoesNotCount) {
+    const std::vector<Cache> caches = {cache_at({0, 0, 0}, 1)};
+    EXPECT_TRUE(light_at(caches, point_at({0.1f, 0, 0})));
+    EXPECT_FALSE(light_at(caches, point_at({0.6f, 0, 0})));
+    EXPECT_FALSE(light_at(caches, point_at({0.1f, 0, 0}, {0, 0, -1})));
+    EXPECT_FALSE(light_at(caches, point_at({0.1f, 0, 0}, {1, 0, 0})));
+    EXPECT_FALSE(light_at(caches, point_at({0, 0, -0.1f})));  // Ward's third factor
+    EXPECT_FALSE(light_at(caches, point_at({0, 0, 0.2f})));
+}
+
+TEST(Caches, LightFollowsTheNormal) {
+    std::vector<Cache> caches = {cache_at({0, 0, 0}, 1)};
+    caches[0].light = even_light(1, glm::normalize(glm::vec3(0.3f, 0, 1)));
+    const float toward = light_at(caches, point_at({0, 0, 0}, glm::normalize(glm::vec3(0.2f, 0, 1))))->x;
+    const float away = light_at(caches, point_at({0, 0, 0}, glm::normalize(glm::vec3(-0.2f, 0, 1))))->x;
+    EXPECT_GT(toward, 1.05f * away);
+}
+
+TEST(Caches, PixelsWithoutCachesAreReturnedAndKeepTheirLight) {
+    std::vector<SurfacePoint> surfaces(64 * 64, point_at({0, 0, 0}));
+    for (size_t i = 0; i < surfaces.size() / 2; ++i) surfaces[i].position.x = 2;
+    std::vector<uint32_t> pixels(surfaces.size());
+    std::iota(pixels.begin(), pixels.end(), 0u);
+    std::vector<glm::vec4> light(surfaces.size(), glm::vec4(9));
+    const auto lonely =
+        interpolate(kCamera, surfaces, pixels, std::vector{cache_at({0, 0, 0}, 1, 3.0f)}, light);
+    EXPECT_TRUE(lonely.empty());
+    const auto all = interpolate(kCamera, surfaces, pixels, {}, light);
+    EXPECT_EQ(all.size(), surfaces.size());
+    EXPECT_NEAR(light[5].x, 1, 1e-5);
+}
+
+}  // namespace
+}  // namespace lucarne::gi::environment
