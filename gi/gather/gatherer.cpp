@@ -50,6 +50,7 @@ Result<std::vector<float>> MicroBuffers::nearness() const {
 }
 
 Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
+    ++tree_;
     empty_ = tree.empty();
     const WideNode nothing = empty_node();
     const auto bytes = std::as_bytes(empty_ ? std::span(&nothing, 1) : std::span(tree.nodes));
@@ -126,7 +127,12 @@ Gatherer::Asked Gatherer::asked(Gathered what) const {
 Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points, uint32_t side,
                            uint64_t seed, MicroBuffers& buffers, const std::atomic<bool>* stop) {
     const uint32_t grid = grid_for(side);
+    const auto bytes = std::as_bytes(points);
+    if (buffers.count_ == points.size() && buffers.grid_ == grid && buffers.seed_ == seed &&
+        buffers.tree_ == tree_ && std::ranges::equal(std::as_bytes(std::span(buffers.held_)), bytes))
+        return {};
     buffers.count_ = 0;
+    buffers.held_.assign(points.begin(), points.end());
     if (points.empty()) return {};
     LUCARNE_TRY(make_rays(device, grid, seed));
     LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "see", defines_for(grid)));
@@ -134,7 +140,7 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
     LUCARNE_TRY(device.reserve(buffers.points_, count * sizeof(GatherPoint), "gather points"));
     LUCARNE_TRY(device.reserve(buffers.seen_, count * pixels * sizeof(uint32_t), "micro-buffers"));
     LUCARNE_TRY(device.reserve(buffers.nearness_, count * sizeof(float), "distances"));
-    LUCARNE_TRY(buffers.points_.upload(0, std::as_bytes(points)));
+    LUCARNE_TRY(buffers.points_.upload(0, bytes));
     const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
     for (size_t first = 0; first < count; first += launch.points) {
         if (stop && *stop) return {};
@@ -147,6 +153,7 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
     buffers.count_ = count;
     buffers.grid_ = grid;
     buffers.seed_ = seed;
+    buffers.tree_ = tree_;
     return {};
 }
 

@@ -46,9 +46,10 @@ class MicroBuffers {
  private:
     friend class Gatherer;
     ClBuffer points_, seen_, nearness_;
+    std::vector<GatherPoint> held_;  ///< whose buffers these are
     size_t count_ = 0;
     uint32_t grid_ = 0;
-    uint64_t seed_ = 0;
+    uint64_t seed_ = 0, tree_ = 0;
 };
 
 /// Gathers the light of a tree of surfels at points, on an OpenCL device (gather.cl).
@@ -68,8 +69,9 @@ class Gatherer {
     Result<void> gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points, uint32_t side,
                         uint64_t seed, std::span<glm::vec4> results, const std::atomic<bool>* stop = nullptr,
                         const std::function<void(size_t)>& done = {});
-    /// Draws micro-buffers for points that gather evenly from their half spaces, and keeps them in `buffers`.
-    /// Arguments and errors as for gather().
+    /// Draws micro-buffers for points that gather evenly from their half spaces, and keeps them in `buffers`;
+    /// does nothing if it has drawn these of the same tree. Arguments and errors as for gather(). Use a
+    /// MicroBuffers with one gatherer only.
     Result<void> see(ClDevice& device, std::span<const GatherPoint> points, uint32_t side, uint64_t seed,
                      MicroBuffers& buffers, const std::atomic<bool>* stop = nullptr);
     /// Computes the light that reaches the points of `buffers`, which see() has drawn. Errors: the device
@@ -90,6 +92,7 @@ class Gatherer {
     bool empty_ = true;
     uint32_t grid_ = 0;
     uint64_t seed_ = 0;
+    uint64_t tree_ = 0;  ///< number of the tree
 };
 
 }  // namespace lucarne::gi

@@ -46,8 +46,9 @@ constexpr float kCoarser = 4;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
-constexpr uint32_t kRepairSpacing = 4;    ///< pixels between those lonely ones that gather first
-constexpr size_t kRepairsAtOnce = 16384;  ///< micro-buffers of lonely pixels
+constexpr size_t kMostSecondariesHeld = 262144;  ///< likewise, 85 MB
+constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
+constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
 
 class EnvironmentEngine final : public Engine {
  public:
@@ -71,7 +72,7 @@ class EnvironmentEngine final : public Engine {
     void report(Frame& frame, double share);
 
     TreeLighting lighting_;
-    MicroBuffers buffers_, repairs_;
+    MicroBuffers buffers_, secondary_buffers_, repairs_;
     Secondaries secondaries_;
     std::vector<Cache> caches_;
     GatherCounts lobes_;
@@ -167,11 +168,21 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
         points.push_back(point_at(place.position, place.normal, place.radius, mix64(seed_ + 1, sides[i])));
         places.push_back(i);
     }
-    std::vector<glm::vec4> gathered(points.size());
-    LUCARNE_TRY(lighting_.gatherer().gather(lighting_.opencl(), what, points, kSecondarySide, seed_, gathered,
-                                            frame.stop));
-    for (size_t i = 0; i < places.size(); ++i) irradiances[places[i]] = kPi * glm::vec3(gathered[i]);
     gathering_ = points.size();
+    Gatherer& gatherer = lighting_.gatherer();
+    if (points.size() > kMostSecondariesHeld) {
+        std::vector<glm::vec4> gathered(points.size());
+        LUCARNE_TRY(
+            gatherer.gather(lighting_.opencl(), what, points, kSecondarySide, seed_, gathered, frame.stop));
+        for (size_t i = 0; i < places.size(); ++i) irradiances[places[i]] = kPi * glm::vec3(gathered[i]);
+        return irradiances;
+    }
+    LUCARNE_TRY(
+        gatherer.see(lighting_.opencl(), points, kSecondarySide, seed_, secondary_buffers_, frame.stop));
+    if (frame.stopped()) return irradiances;
+    LUCARNE_ASSIGN(const auto gathered, gatherer.shade(lighting_.opencl(), what, secondary_buffers_));
+    for (size_t i = 0; i < places.size(); ++i)
+        irradiances[places[i]] = kPi * gathered[i].on(points[i].normal);
     return irradiances;
 }
 

@@ -1,5 +1,6 @@
 #include "gi/gather/gatherer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -132,6 +133,15 @@ TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
         if (code < kSeesSky) {
             ASSERT_NE(tree.nodes[code / 16].child[code / 2 % 8], kNoChild);
         }
+    // Buffers of the same points stay as they are, and are drawn again for another tree.
+    ASSERT_TRUE(gatherer.see(*opencl_, points, 16, 1, buffers));
+    EXPECT_EQ(*buffers.seen(), *seen);
+    ASSERT_TRUE(gatherer.set_tree(*opencl_, {}));
+    ASSERT_TRUE(gatherer.see(*opencl_, points, 16, 1, buffers));
+    const auto of_nothing = buffers.seen();
+    EXPECT_TRUE(std::ranges::all_of(*of_nothing, [](uint32_t code) { return code >= kSeesSky; }));
+    ASSERT_TRUE(gatherer.set_tree(*opencl_, tree));
+    ASSERT_TRUE(gatherer.see(*opencl_, points, 16, 1, buffers));
     const auto nearness = buffers.nearness();
     ASSERT_TRUE(nearness);
     for (const float near : *nearness) EXPECT_GT(near, 1 / 1.75f);
