@@ -11,7 +11,7 @@ namespace lucarne::gi::environment {
 namespace {
 
 constexpr uint32_t kTileSide = 16;
-constexpr size_t kPixelsAPiece = 4096;
+constexpr size_t kPixelsAPiece = 4096, kCachesAPiece = 256;
 /// Caches whose normals differ by more than about 37 degrees do not count.
 constexpr float kLeastAgreement = 0.8f;
 /// Offsets across a surface count as so many times those along it.
@@ -80,19 +80,39 @@ CacheTiles::Range CacheTiles::range_of(const CameraView& camera, const Cache& ca
             tile(place.y - radius, rows_), std::min(tile(place.y + radius, rows_) + 1, rows_)};
 }
 
-std::optional<glm::vec3> CacheTiles::light_at(const SurfacePoint& at, uint32_t x, uint32_t y) const {
-    const size_t tile = size_t{y / kTileSide} * columns_ + x / kTileSide;
-    glm::vec3 sum(0.0f);
+std::optional<LightVectors> CacheTiles::light_at(const SurfacePoint& at, const glm::vec2& pixel) const {
+    const auto tile = [](float place, uint32_t count) {
+        return static_cast<size_t>(std::clamp(place / kTileSide, 0.0f, static_cast<float>(count - 1)));
+    };
+    const size_t number = tile(pixel.y, rows_) * columns_ + tile(pixel.x, columns_);
+    LightVectors sum{};
     float weights = 0;
-    for (size_t i = starts_[tile]; i < starts_[tile + 1]; ++i) {
+    for (size_t i = starts_[number]; i < starts_[number + 1]; ++i) {
         const Cache& cache = caches_[numbers_[i]];
         const float weight = weight_of(cache, at);
         if (!(weight > 0)) continue;
-        sum += weight * cache.light.on(at.normal);
+        sum.red += weight * cache.light.red;
+        sum.green += weight * cache.light.green;
+        sum.blue += weight * cache.light.blue;
         weights += weight;
     }
-    if (weights > kLeastSum) return sum / weights;
-    return std::nullopt;
+    if (!(weights > kLeastSum)) return std::nullopt;
+    return LightVectors{sum.red / weights, sum.green / weights, sum.blue / weights};
+}
+
+void smooth(const CameraView& camera, std::span<Cache> caches) {
+    const CacheTiles tiles(camera, caches);
+    std::vector<LightVectors> light(caches.size());
+    parallel_ranges(caches.size(), kCachesAPiece, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const Cache& cache = caches[i];
+            float depth = 0;
+            const glm::vec2 pixel = view_place(camera, cache.position, depth);
+            light[i] = tiles.light_at({.position = cache.position, .normal = cache.normal}, pixel)
+                           .value_or(cache.light);
+        }
+    });
+    for (size_t i = 0; i < caches.size(); ++i) caches[i].light = light[i];
 }
 
 std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const SurfacePoint> surfaces,
@@ -103,9 +123,11 @@ std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const Surf
     parallel_ranges(pixels.size(), kPixelsAPiece, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const uint32_t pixel = pixels[i];
-            const auto found = tiles.light_at(surfaces[pixel], pixel % camera.width, pixel / camera.width);
+            const glm::vec2 at(static_cast<float>(pixel % camera.width),
+                               static_cast<float>(pixel / camera.width));
+            const auto found = tiles.light_at(surfaces[pixel], at);
             if (found)
-                light[pixel] = glm::vec4(*found, 0);
+                light[pixel] = glm::vec4(found->on(surfaces[pixel].normal), 0);
             else
                 lonely[first / kPixelsAPiece].push_back(pixel);
         }

@@ -26,12 +26,11 @@ class CacheTiles {
     /// `caches` must live as long as the tiles.
     CacheTiles(const CameraView& camera, std::span<const Cache> caches);
 
-    /// Interpolates the light of a surface point from the caches about it (Harada 2014, section 3.5): each
+    /// Interpolates the light about a surface point from the caches about it (Harada 2014, section 3.5): each
     /// counts by how near it is and how much its normal agrees (Ward et al. 1988, with the smooth weights of
-    /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. `x` and `y`: the
-    /// pixel that it is seen in, if nothing hides it. Returns the mean radiance for its normal, W/(sr m^2);
-    /// nothing if no cache counts.
-    std::optional<glm::vec3> light_at(const SurfacePoint& at, uint32_t x, uint32_t y) const;
+    /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. `pixel`: where
+    /// it is seen if nothing hides it; the nearest place in the picture counts. Nothing if no cache counts.
+    std::optional<LightVectors> light_at(const SurfacePoint& at, const glm::vec2& pixel) const;
 
  private:
     struct Range {
@@ -47,8 +46,12 @@ class CacheTiles {
     std::vector<uint32_t> numbers_;
 };
 
-/// Sets the `light` of these `pixels` to what CacheTiles::light_at() returns. Returns those for which no
-/// cache counts; their light is left as it is.
+/// Lets caches share their light with those about them, as pixels do, which halves the noise of their few
+/// rays.
+void smooth(const CameraView& camera, std::span<Cache> caches);
+
+/// Sets the `light` of these `pixels`: the mean radiance for their normals, W/(sr m^2), from the caches.
+/// Returns those for which no cache counts; their light is left as it is.
 std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const SurfacePoint> surfaces,
                                   std::span<const uint32_t> pixels, std::span<const Cache> caches,
                                   std::span<glm::vec4> light);

@@ -154,14 +154,11 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
         const SidePlace place = place_of(lighting_.lit().tree(), lighting_.lit().surfels(), sides[i]);
         float depth = 0;
         const glm::vec2 at = view_place(camera, place.position, depth);
-        if (depth > 0 && at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(camera.width) &&
-            at.y < static_cast<float>(camera.height)) {
+        if (depth > 0 || is_parallel(camera)) {
             const SurfacePoint surface{
                 .position = place.position, .normal = place.normal, .radius = place.radius};
-            const auto found =
-                tiles.light_at(surface, static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y));
-            if (found) {
-                irradiances[i] = kPi * *found;
+            if (const auto found = tiles.light_at(surface, at)) {
+                irradiances[i] = kPi * found->on(place.normal);
                 continue;
             }
         }
@@ -199,6 +196,7 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
                                        kLeastReach * place.size, kReach * place.size);
         caches_.push_back({place.position, place.normal, reach, light[i]});
     }
+    smooth(frame.camera, caches_);
     return {};
 }
 

@@ -27,8 +27,9 @@ const CameraView kCamera = scenes::look({0, 0, 5}, {0, 0, 0}, 0.5f, 64);
 std::optional<glm::vec3> light_at(std::span<const Cache> caches, const SurfacePoint& at) {
     float depth = 0;
     const glm::vec2 pixel = view_place(kCamera, at.position, depth);
-    return CacheTiles(kCamera, caches)
-        .light_at(at, static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y));
+    const auto found = CacheTiles(kCamera, caches).light_at(at, pixel);
+    if (!found) return std::nullopt;
+    return found->on(at.normal);
 }
 
 TEST(Caches, LightBetweenEqualCachesIsTheirs) {
@@ -61,6 +62,19 @@ TEST(Caches, WhatIsFarOrTurnedAwayOrInFrontDoesNotCount) {
     EXPECT_FALSE(light_at(caches, point_at({0.1f, 0, 0}, {1, 0, 0})));
     EXPECT_FALSE(light_at(caches, point_at({0, 0, -0.1f})));  // Ward's third factor
     EXPECT_FALSE(light_at(caches, point_at({0, 0, 0.2f})));
+}
+
+TEST(Caches, SmoothingKeepsEvenLightAndEvensNoise) {
+    std::vector<Cache> even, noisy;
+    for (int i = -5; i <= 5; ++i)
+        for (int j = -5; j <= 5; ++j) {
+            even.push_back(cache_at(0.3f * glm::vec3(i, j, 0), 2));
+            noisy.push_back(cache_at(0.3f * glm::vec3(i, j, 0), (i + j) % 2 == 0 ? 1.0f : 3.0f));
+        }
+    smooth(kCamera, even);
+    for (const Cache& cache : even) EXPECT_NEAR(cache.light.on(cache.normal).x, 2, 1e-5);
+    smooth(kCamera, noisy);
+    for (const Cache& cache : noisy) EXPECT_LT(std::abs(cache.light.on(cache.normal).x - 2), 0.8f);
 }
 
 TEST(Caches, LightFollowsTheNormal) {
