@@ -183,7 +183,8 @@ Result<void> Pipeline::State::build_cuts(bool hold_light) {
 
 /// Returns the engine that draws this frame.
 Result<gi::Engine*> Pipeline::State::drawing_engine(const FrameRequest& request) {
-    if (!request.stand_in || !engine->info().reports_progress) return engine.get();
+    const bool early = request.stand_in_early && surfels.stats().pending > 0;
+    if (!(request.stand_in || early) || !engine->info().reports_progress) return engine.get();
     if (!stand_in) {
         LUCARNE_ASSIGN(stand_in, gi::make_engine(gi::default_engine().name));
     }

@@ -54,6 +54,7 @@ struct FrameRequest {
     gi::StepBudget light_budget{};
     double exposure_seconds = 0;  ///< time in which automatic exposure follows by 63 %; 0: at once
     bool stand_in = false;        ///< lets the default engine draw in the place of one that takes long
+    bool stand_in_early = false;  ///< likewise, as long as nodes are on their way
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
     Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
 };

@@ -393,6 +393,7 @@ void ViewSession::send_request() {
     request.frame.accumulate = !request.moving && !std::ranges::any_of(scans_.rows(), grows);
     if (shot_) request.pictures = shot_->pictures;
     request.frame.moving = request.frame.stand_in = request.moving;
+    request.frame.stand_in_early = true;
     if (request.moving) {
         const ImageSize size = quality_.size(request.frame.size);
         request.sketch = rest >= kSharp && !(size == request.frame.size);

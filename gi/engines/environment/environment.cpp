@@ -33,7 +33,7 @@ constexpr const OptionInfo* kOptions[] = {
     &kBruteForce.info,     &kSeed.info};
 constexpr EngineInfo kInfo{
     .name = "environment",
-    .label = "Daylight",
+    .label = "Environment lighting",
     .description = "light of the sky and between surfaces, gathered at visible points, on OpenCL",
     .options = kOptions,
     .needs = {.light_cut = true, .light_views = true, .opencl = true},

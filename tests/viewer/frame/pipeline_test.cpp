@@ -1,5 +1,7 @@
 #include "viewer/frame/pipeline.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/viewer/frame/with_cornell.h"
@@ -75,6 +77,20 @@ TEST_F(PipelineTest, TheNodesOfTheEngineThatStandsInInMotionAreThereBeforeTheMot
     const FrameStats moving = frame("reference");
     EXPECT_GT(moving.light_view_points, 0u);
     EXPECT_EQ(moving.complete(), 1);
+}
+
+TEST_F(PipelineTest, TheDefaultEngineDrawsUntilAllNodesAreThere) {
+    request_.wait = false;
+    request_.stand_in_early = true;
+    const auto is_traced = [](const FrameStats& stats) {
+        return std::ranges::any_of(stats.passes, [](const auto& pass) { return pass.name == "paths"; });
+    };
+    for (;;) {
+        const FrameStats stats = frame("reference");
+        if (!is_traced(stats)) continue;
+        EXPECT_EQ(stats.complete(), 1);
+        break;
+    }
 }
 
 }  // namespace
