@@ -1,47 +1,30 @@
 // The accuracy of the `vpl` engine against analytic truth and against the reference, as a table: every row
 // with its preset, its figure and its target. This is a program and not a test: `./run accuracy` takes some
-// minutes and prints missed targets. `lucarne_accuracy [FOLDER] [--scale S]`: pictures go to FOLDER (default:
-// a temporary one that is removed).
+// minutes and prints missed targets. `lucarne_accuracy [FOLDER] [ENGINE] [--scale S]`: pictures go to FOLDER
+// (default: a temporary one that is removed). ENGINE: micro or environment (gathered_accuracy.h) instead.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "tests/bench/accuracy.h"
 #include "tests/bench/bench_run.h"
+#include "tests/bench/gathered_accuracy.h"
 #include "tests/bench/scan.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
-#include "viewer/frame/presets.h"
 
 namespace lucarne {
 namespace {
 
-using bench::BenchRun, bench::Scan;
-
-void row(const std::string& scene, const std::string& measure, double value, double target, bool percent) {
-    const double scale = percent ? 100 : 1;
-    fmt::print("{:<44} {:<28} {:>9.4g} {:1} target {:>6.4g}  {}\n", scene, measure, scale * value,
-               percent ? "%" : "", scale * target, std::abs(value) <= target ? "kept" : "MISSED");
-    std::fflush(stdout);
-}
-
-gi::EngineSettings high(const BenchRun& run) {
-    return viewer::find_preset(run.trial() ? "preview" : "high")->engine;
-}
-/// Returns the side of a square picture, pixels.
-uint32_t side(const BenchRun& run, uint32_t full) {
-    return run.trial() ? 32 : full;
-}
+using bench::BenchRun, bench::high, bench::row, bench::Scan, bench::side;
 
 std::string samples(const BenchRun& run, uint64_t full) {
     return fmt::format(" --samples {}", run.count(full));
@@ -54,33 +37,6 @@ double brightest(const std::vector<glm::vec4>& picture) {
     double most = 0;
     for (const glm::vec4& pixel : picture) most = std::max(most, gi::luminance(pixel));
     return most;
-}
-
-Result<void> furnace(gi::Device& device, const BenchRun& run) {
-    gi::scenes::AnalyticScene scene;
-    scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
-    scene.materials = {gi::scenes::material(1, 0, 1, 0.5f)};
-    scene.camera =
-        gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, side(run, 128));
-    scene.settings = high(run);
-    for (const uint32_t bounces : run.cases<uint32_t>({1, 2, 3, 4})) {
-        scene.settings.set(gi::kBounces, bounces);
-        const double truth = 1 - std::pow(0.5, bounces + 1);
-        double sum = 0;
-        constexpr int kFrames = 4;
-        for (int i = 0; i < kFrames; ++i) {
-            LUCARNE_ASSIGN(const auto rendered,
-                           gi::scenes::render(device, "vpl", scene, static_cast<uint64_t>(i)));
-            const double mean = gi::mean_luminance(rendered.radiance);
-            if (i == 0)
-                row(fmt::format("closed furnace, {} bounces, high", bounces), "mean", mean / truth - 1, .02,
-                    true);
-            sum += mean / kFrames;
-        }
-        row(fmt::format("closed furnace, {} bounces, 4 frames", bounces), "mean", sum / truth - 1, .005,
-            true);
-    }
-    return {};
 }
 
 /// Measures the mean radiance of a unit square of albedo .5 lit by another square that emits radiance 1,
@@ -266,12 +222,7 @@ Result<void> glossy(const BenchRun& run) {
     const std::string common = run.picture(64, "high") + "--only-bounce 1 ";
     using Glossy = std::pair<int, int>;  // the lobe's exponent, the reference's paths a pixel
     for (const auto& [exponent, paths] : run.cases<Glossy>({{10, 4096}, {100, 8192}, {1000, 32768}})) {
-        std::ifstream file(bench::scene_file("cornell-glossy"));
-        auto scene = nlohmann::json::parse(file);
-        scene["materials"][0]["shininess"] = exponent;
-        const std::filesystem::path shiny = run.folder / fmt::format("shininess-{}.json", exponent);
-        std::ofstream(shiny) << scene;
-        scan.light_by(shiny);
+        scan.light_by(bench::shiny_scene(run, exponent));
         LUCARNE_ASSIGN(const auto truth,
                        scan.truth("truth", common + samples(run, static_cast<uint64_t>(paths))));
         for (const std::string& time : {std::string(), seconds(run, 60)}) {
@@ -290,7 +241,9 @@ Result<void> glossy(const BenchRun& run) {
 
 Result<void> measure(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
-    LUCARNE_TRY(furnace(*device, run));
+    if (run.subject == "micro") return bench::accuracy_of_micro(*device, run);
+    if (run.subject == "environment") return bench::accuracy_of_environment(*device, run);
+    LUCARNE_TRY(bench::furnace(*device, run, "vpl", .02, .005));
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f);
     LUCARNE_TRY(form_factor(*device, run, "parallel at 1", z, y, x, .199825));
     LUCARNE_TRY(form_factor(*device, run, "parallel at .5", .5f * z, y, x, .415253));
@@ -307,5 +260,5 @@ Result<void> measure(const BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(argc, argv, lucarne::measure);
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {.subjects = {"micro", "environment"}});
 }

@@ -1,4 +1,4 @@
-// The command line of every benchmark program: `PROGRAM [FOLDER] [--scale S] [--OPTION NUMBER]...`.
+// The command line of every benchmark program: `PROGRAM [FOLDER] [SUBJECT] [--scale S] [--OPTION NUMBER]...`.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,6 +26,7 @@ namespace lucarne::bench {
 struct BenchRun {
     std::filesystem::path folder;           ///< for scans, caches and pictures
     double scale = 1;                       ///< factor of the full size, in (0, 1]
+    std::string subject;                    ///< one of the program's subjects; empty: none is named
     std::map<std::string, double> options;  ///< the program's own options, without the dashes
 
     uint64_t points(uint64_t full) const { return std::max<uint64_t>(scaled(full), 10'000); }
@@ -59,13 +59,21 @@ struct BenchRun {
     uint64_t scaled(uint64_t full) const { return static_cast<uint64_t>(scale * static_cast<double>(full)); }
 };
 
+/// The words that a benchmark program takes beside its folder and the scale.
+struct BenchWords {
+    std::vector<std::string> options;   ///< with a number each, without the dashes
+    std::vector<std::string> subjects;  ///< what can be measured instead of the usual
+};
+
 /// Reads the arguments into `run`. Returns the first wrong argument, or an empty text.
-inline std::string read_arguments(int argc, char** argv, std::initializer_list<const char*> options,
-                                  BenchRun& run) {
+inline std::string read_arguments(int argc, char** argv, const BenchWords& words, BenchRun& run) {
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
         if (!argument.starts_with("--")) {
-            run.folder = argument;
+            if (std::ranges::find(words.subjects, argument) != words.subjects.end())
+                run.subject = argument;
+            else
+                run.folder = argument;
             continue;
         }
         const std::string name = argument.substr(2);
@@ -74,7 +82,7 @@ inline std::string read_arguments(int argc, char** argv, std::initializer_list<c
         if (!end || *end) return argument;
         if (name == "scale" && value > 0 && value <= 1)
             run.scale = value;
-        else if (std::ranges::find(options, name) != options.end())
+        else if (std::ranges::find(words.options, name) != words.options.end())
             run.options[name] = value;
         else
             return argument;
@@ -83,15 +91,17 @@ inline std::string read_arguments(int argc, char** argv, std::initializer_list<c
 }
 
 /// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed, also by
-/// a signal that ends the program. `options` are the names of the program's own options. Returns the exit
-/// status: 1 if something failed, but not for a missed target.
+/// a signal that ends the program. Returns the exit status: 1 if something failed, but not for a missed
+/// target.
 inline int bench_main(int argc, char** argv, const std::function<Result<void>(const BenchRun&)>& measure,
-                      std::initializer_list<const char*> options = {}) {
+                      const BenchWords& words = {}) {
     const std::string program = std::filesystem::path(argv[0]).filename();
     BenchRun run;
-    if (const std::string wrong = read_arguments(argc, argv, options, run); !wrong.empty()) {
-        std::string usage = program + " [FOLDER] [--scale S, of the full size, at most 1]";
-        for (const char* option : options) usage += fmt::format(" [--{} NUMBER]", option);
+    if (const std::string wrong = read_arguments(argc, argv, words, run); !wrong.empty()) {
+        std::string usage = program + " [FOLDER]";
+        for (const std::string& subject : words.subjects) usage += fmt::format(" [{}]", subject);
+        usage += " [--scale S, of the full size, at most 1]";
+        for (const std::string& option : words.options) usage += fmt::format(" [--{} NUMBER]", option);
         fmt::print(stderr, "{}: {}: is unknown or has no valid number; usage: {}\n", program, wrong, usage);
         return 2;
     }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -18,84 +17,18 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
-#include "tests/bench/quantile.h"
 #include "tests/bench/scan.h"
-#include "viewer/commands/options/drawing_options.h"
-#include "viewer/frame/rgba.h"
-#include "viewer/inputs/input.h"
+#include "tests/bench/stage.h"
 
 namespace lucarne {
 namespace {
 
-using bench::BenchRun, bench::median, bench::Scan;
+using bench::BenchRun, bench::Scan, bench::Stage;
 
 void heading(const std::string& text) {
     fmt::print("\n{}\n", text);
     std::fflush(stdout);
 }
-
-/// A scan in its own pipeline, as in the viewer.
-class Stage {
- public:
-    Stage(gi::Device& device, const Scan& scan) : device_(device), scan_(scan) {}
-
-    Result<void> open(const std::string& scene, ImageSize size) {
-        LUCARNE_ASSIGN(const auto source, viewer::open_input(scan_.cache()));
-        viewer::DrawingOptions options;
-        options.scene = bench::scene_file(scene);
-        LUCARNE_TRY(viewer::take_render_settings(options));
-        LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
-        LUCARNE_ASSIGN(const viewer::SceneForScan made, viewer::load_scene_for(options, *source));
-        const gi::Scene& loaded = made.scene;
-        LUCARNE_ASSIGN(request_.camera, viewer::find_camera(loaded, ""));
-        request_.size = size;
-        request_.wait = true;
-        LUCARNE_ASSIGN(pipeline_, viewer::open_pipeline(device_, source, options, drawing, loaded));
-        return {};
-    }
-
-    struct Measured {
-        double milliseconds = 0;  ///< median
-        double processor = 0;     ///< time of all cores, ms: median
-        double luminance = 0;     ///< mean over pixels and frames
-        size_t points = 0;        ///< points of the cut that is drawn into the shadow maps
-    };
-    /// Draws frames that share nothing: each has other VPLs, but every call uses the same ones.
-    Result<Measured> frames(gi::EngineSettings settings, int count) {
-        Measured measured;
-        std::vector<double> times, processor;
-        for (int i = 0; i < count; ++i) {
-            settings.set(gi::kSeed, 1 + static_cast<uint64_t>(i));
-            pipeline_->set_settings(settings);
-            const std::clock_t start = std::clock();
-            LUCARNE_ASSIGN(const viewer::FrameStats stats, pipeline_->render(request_));
-            processor.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-            times.push_back(1e3 * stats.seconds);
-            const size_t pixels = size_t{request_.size.width} * request_.size.height;
-            measured.luminance +=
-                gi::mean_luminance(pipeline_->radiance().download_all<glm::vec4>(pixels)) / count;
-        }
-        measured.milliseconds = median(times);
-        measured.processor = median(processor);
-        return measured;
-    }
-
-    /// Writes the last frame, tone-mapped.
-    Result<void> write(const std::filesystem::path& path) const {
-        const size_t pixels = size_t{request_.size.width} * request_.size.height;
-        const auto rgba = pipeline_->picture().download_all<uint32_t>(pixels);
-        return io::write_png(path, viewer::without_alpha(std::as_bytes(std::span(rgba)), request_.size),
-                             true);
-    }
-
-    gi::EngineSettings settings() const { return pipeline_->settings(); }
-
- private:
-    gi::Device& device_;
-    const Scan& scan_;
-    viewer::FrameRequest request_;
-    std::unique_ptr<viewer::Pipeline> pipeline_;
-};
 
 /// Sets the number of VPLs and an atlas that gives each map about 64 x 64 texels, as in the paper.
 void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
@@ -110,7 +43,7 @@ Result<void> figure_9(gi::Device& device, const Scan& scan, const BenchRun& run)
     fmt::print("{:>8} {:>12} {:>14} {:>16} {:>16}\n", "bounces", "ms a frame", "of all cores",
                "mean luminance", "more than before");
     Stage stage(device, scan);
-    LUCARNE_TRY(stage.open("cornell", {side, side}));
+    LUCARNE_TRY(stage.open({.scene = bench::scene_file("cornell"), .size = {side, side}}));
     gi::EngineSettings settings = stage.settings();
     LUCARNE_TRY(stage.frames(settings, 1));  // warm-up: shaders, first loads
     double before = 0;
@@ -132,7 +65,7 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
                    const BenchRun& run) {
     const uint32_t side = run.side(256);
     Stage stage(device, scan);
-    LUCARNE_TRY(stage.open(scene, {side, side}));
+    LUCARNE_TRY(stage.open({.scene = bench::scene_file(scene), .size = {side, side}}));
     gi::EngineSettings settings = stage.settings();
     LUCARNE_TRY(stage.frames(settings, 1));
     settings.set(gi::kBounces, 0);
@@ -288,5 +221,5 @@ Result<void> make_figures(const BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(argc, argv, lucarne::make_figures, {"only"});
+    return lucarne::bench::bench_main(argc, argv, lucarne::make_figures, {.options = {"only"}});
 }

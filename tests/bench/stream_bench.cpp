@@ -180,5 +180,5 @@ Result<void> measure(const bench::BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {"soak"});
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {.options = {"soak"}});
 }

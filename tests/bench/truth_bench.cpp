@@ -244,5 +244,5 @@ Result<void> measure(const BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {"samples"});
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {.options = {"samples"}});
 }

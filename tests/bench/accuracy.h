@@ -1,0 +1,80 @@
+// What the tables of accuracy share: rows, settings, and scenes that all engines are measured in.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
+#include "tests/bench/bench_run.h"
+#include "tests/bench/scan.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "viewer/frame/presets.h"
+
+namespace lucarne::bench {
+
+/// Prints a figure beside the largest value that it should have.
+inline void row(const std::string& scene, const std::string& measure, double value, double target,
+                bool percent) {
+    const double scale = percent ? 100 : 1;
+    fmt::print("{:<44} {:<28} {:>9.4g} {:1} target {:>6.4g}  {}\n", scene, measure, scale * value,
+               percent ? "%" : "", scale * target, std::abs(value) <= target ? "kept" : "MISSED");
+    std::fflush(stdout);
+}
+
+inline gi::EngineSettings high(const BenchRun& run) {
+    return viewer::find_preset(run.trial() ? "preview" : "high")->engine;
+}
+/// Returns the side of a square picture, pixels.
+inline uint32_t side(const BenchRun& run, uint32_t full) {
+    return run.trial() ? 32 : full;
+}
+
+/// Writes the Cornell box whose surfaces all are glossy, with lobes of this exponent, and returns the file.
+inline std::filesystem::path shiny_scene(const BenchRun& run, int exponent) {
+    std::ifstream file(scene_file("cornell-glossy"));
+    auto scene = nlohmann::json::parse(file);
+    scene["materials"][0]["shininess"] = exponent;
+    const std::filesystem::path shiny = run.folder / fmt::format("shininess-{}.json", exponent);
+    std::ofstream(shiny) << scene;
+    return shiny;
+}
+
+/// Measures a closed box of albedo .5 whose walls emit .5: one frame and the mean of four, with the errors
+/// that they should keep.
+inline Result<void> furnace(gi::Device& device, const BenchRun& run, const std::string& engine, double one,
+                            double four) {
+    gi::scenes::AnalyticScene scene;
+    scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
+    scene.materials = {gi::scenes::material(1, 0, 1, 0.5f)};
+    scene.camera =
+        gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, side(run, 128));
+    scene.settings = high(run);
+    for (const uint32_t bounces : run.cases<uint32_t>({1, 2, 3, 4})) {
+        scene.settings.set(gi::kBounces, bounces);
+        const double truth = 1 - std::pow(0.5, bounces + 1);
+        double sum = 0;
+        constexpr int kFrames = 4;
+        for (int i = 0; i < kFrames; ++i) {
+            LUCARNE_ASSIGN(const auto rendered,
+                           gi::scenes::render(device, engine, scene, static_cast<uint64_t>(i)));
+            const double mean = gi::mean_luminance(rendered.radiance);
+            if (i == 0)
+                row(fmt::format("closed furnace, {} bounces, high", bounces), "mean", mean / truth - 1, one,
+                    true);
+            sum += mean / kFrames;
+        }
+        row(fmt::format("closed furnace, {} bounces, 4 frames", bounces), "mean", sum / truth - 1, four,
+            true);
+    }
+    return {};
+}
+
+}  // namespace lucarne::bench
