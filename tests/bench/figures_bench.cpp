@@ -1,8 +1,10 @@
 // The experiments of Preiner 2010 ("Real-Time Global Illumination in Point Clouds"), section 5, repeated: the
 // light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
-// (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [--scale S]
-// [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). This is a
-// program and not a test; it takes about ten minutes on two cores.
+// (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [ENGINE] [--scale
+// S]
+// [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). ENGINE: micro
+// or environment (gathered_figures.h) instead. This is a program and not a test; it takes about ten minutes
+// on two cores.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,18 +19,14 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
+#include "tests/bench/gathered_figures.h"
 #include "tests/bench/scan.h"
 #include "tests/bench/stage.h"
 
 namespace lucarne {
 namespace {
 
-using bench::BenchRun, bench::Scan, bench::Stage;
-
-void heading(const std::string& text) {
-    fmt::print("\n{}\n", text);
-    std::fflush(stdout);
-}
+using bench::BenchRun, bench::heading, bench::Scan, bench::Stage;
 
 /// Sets the number of VPLs and an atlas that gives each map about 64 x 64 texels, as in the paper.
 void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
@@ -202,6 +200,8 @@ Result<void> figure_14(Scan& scan, const BenchRun& run) {
 Result<void> make_figures(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     fmt::print("{}; {} hardware threads\n", device->info().renderer, std::thread::hardware_concurrency());
+    if (run.subject == "micro") return bench::figures_of_micro(*device, run);
+    if (run.subject == "environment") return bench::figures_of_environment(*device, run);
     const double only = run.option("only", 0);
     const auto wanted = [&](int figure) { return only == 0 || only == figure; };
     if (wanted(9) || wanted(10) || wanted(14)) {
@@ -221,5 +221,6 @@ Result<void> make_figures(const BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(argc, argv, lucarne::make_figures, {.options = {"only"}});
+    return lucarne::bench::bench_main(argc, argv, lucarne::make_figures,
+                                      {.options = {"only"}, .subjects = {"micro", "environment"}});
 }

@@ -160,7 +160,7 @@ class AccuracyTable {
     /// Returns the view of a scene file that all rows use.
     Stage::View view(const std::string& scene, const std::string& camera = "") const {
         return {.scene = scene,
-                .size = run_.size({160, 100}),
+                .size = run_.size({128, 80}),
                 .preset = run_.trial() ? "preview" : "high",
                 .camera = camera};
     }
@@ -169,11 +169,7 @@ class AccuracyTable {
     /// Compares a picture of `environment` with one for which it gathers at all points.
     Result<void> brute_force(Stage& stage, gi::EngineSettings settings, const Judge& judge,
                              const Stage::Picture& picture) {
-        const auto stat = [&](std::string_view name) {
-            for (const auto& [key, value] : picture.last.engine)
-                if (key == name) return value;
-            return 0.0;
-        };
+        const auto stat = [&](std::string_view name) { return statistic(picture.last, name); };
         settings.set(gi::environment::kBruteForce, true);
         LUCARNE_ASSIGN(const Stage::Picture all, stage.picture(engine_, settings));
         LUCARNE_ASSIGN(const double difference, judge.difference(picture.pixels, all.pixels));
@@ -240,7 +236,7 @@ inline Result<void> accuracy_of_micro(gi::Device& device, const BenchRun& run) {
     for (const Glossy& glossy : run.cases<Glossy>({{10, 1024, .01}, {100, 2048, .02}, {1000, 4096, .05}})) {
         Stage stage(device, box);
         Stage::View view = table.view(shiny_scene(run, glossy.exponent));
-        view.size = run.size({80, 64});  // a path tracer hits lobes by chance and needs many paths
+        view.size = run.size({64, 40});  // a path tracer hits lobes by chance and needs many paths
         LUCARNE_TRY(stage.open(view));
         LUCARNE_TRY(table.row(stage, {.name = fmt::format("cornell, shininess {}, bounce 1", glossy.exponent),
                                       .only_bounce = 1,

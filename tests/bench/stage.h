@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,6 +23,20 @@
 #include "viewer/inputs/input.h"
 
 namespace lucarne::bench {
+
+/// Returns one of the engine's statistics of a frame; 0 if it has none of this name.
+inline double statistic(const viewer::FrameStats& stats, std::string_view name) {
+    for (const auto& [key, value] : stats.engine)
+        if (key == name) return value;
+    return 0;
+}
+/// Returns how long the passes of this name took.
+inline double pass_seconds(const viewer::FrameStats& stats, std::string_view name) {
+    double seconds = 0;
+    for (const auto& pass : stats.passes)
+        if (pass.name == name) seconds += pass.seconds;
+    return seconds;
+}
 
 class Stage {
  public:
@@ -59,11 +74,18 @@ class Stage {
     };
     /// Draws frames that share nothing: each has other VPLs, but every call uses the same ones.
     Result<Measured> frames(gi::EngineSettings settings, int count) {
+        return frames_after(count, [&](int i) -> Result<void> {
+            settings.set(gi::kSeed, 1 + static_cast<uint64_t>(i));
+            pipeline_->set_settings(settings);
+            return {};
+        });
+    }
+    /// Draws frames, each after change(index), which may change pipeline() and request().
+    Result<Measured> frames_after(int count, const std::function<Result<void>(int)>& change) {
         Measured measured;
         std::vector<double> times, processor;
         for (int i = 0; i < count; ++i) {
-            settings.set(gi::kSeed, 1 + static_cast<uint64_t>(i));
-            pipeline_->set_settings(settings);
+            LUCARNE_TRY(change(i));
             const std::clock_t start = std::clock();
             LUCARNE_ASSIGN(measured.last, pipeline_->render(request_));
             processor.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
@@ -118,7 +140,7 @@ class Stage {
 
     gi::EngineSettings settings() const { return pipeline_->settings(); }
     viewer::Pipeline& pipeline() { return *pipeline_; }
-    const viewer::FrameRequest& request() const { return request_; }
+    viewer::FrameRequest& request() { return request_; }
 
  private:
     size_t pixels() const { return size_t{request_.size.width} * request_.size.height; }
