@@ -34,6 +34,8 @@ constexpr std::array kEntries = {
     Entry{"statue", "a smooth closed body on a plinth, seen from outside", build_statue},
     Entry{"ring", "a metal ring of 70 cm that stands on a floor before a wall", build_ring},
     Entry{"paraboloid", "a metal mirror of 1.2 m before a wall, focal length 1.2 m", build_paraboloid},
+    Entry{"primitives", "boxes, balls, a cylinder and a cone on a floor of 12 m, seen from outside",
+          build_primitives},
 };
 
 /// A place in a quad, with the weights of its corners.

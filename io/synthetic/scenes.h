@@ -26,5 +26,6 @@ SceneModel build_house();
 SceneModel build_statue();
 SceneModel build_ring();
 SceneModel build_paraboloid();
+SceneModel build_primitives();
 
 }  // namespace lucarne::io

@@ -260,8 +260,9 @@ inline Result<void> accuracy_of_environment(gi::Device& device, const BenchRun& 
         std::string scan, sampling;
         uint64_t points;
     };
-    for (const Open& open :
-         run.cases<Open>({{"statue", "--even --normals", 300'000}, {"survey", "", 500'000}})) {
+    for (const Open& open : run.cases<Open>({{"statue", "--even --normals", 300'000},
+                                             {"primitives", "--even --normals", 300'000},
+                                             {"survey", "", 500'000}})) {
         LUCARNE_ASSIGN(const Scan scan,
                        Scan::create(open.scan, run.points(open.points), run.folder, open.sampling));
         Stage stage(device, scan);

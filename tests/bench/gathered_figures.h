@@ -39,6 +39,7 @@ inline Result<void> figures_of_environment(gi::Device& device, const BenchRun& r
     };
     for (const Open& open : run.cases<Open>({{"statue", "--even --normals", "statue-sky", 300'000},
                                              {"statue", "--even --normals", "statue-sky", 1'000'000},
+                                             {"primitives", "--even --normals", "primitives-sky", 1'000'000},
                                              {"survey", "", "survey-sky", 1'000'000},
                                              {"nave", "--even --normals", "nave-sky", 1'000'000}})) {
         LUCARNE_ASSIGN(const Scan scan,
