@@ -20,7 +20,7 @@ using glm::dvec3;
 
 constexpr double kSkyPi = std::numbers::pi;
 /// Texels are so small that neighbours look alike, and the sky is smooth: a texel's middle is its mean.
-constexpr uint32_t kSkyWidth = 512, kSkyHeight = 256;
+constexpr uint32_t kSkyWidth = 384, kSkyHeight = 192;
 /// Twilight: illuminance falls from 3.4 lx at -6 degrees to .008 lx at -12 and .0007 lx at night (Seidelmann
 /// 1992, "Explanatory Supplement to the Astronomical Almanac", section 9.3).
 constexpr double kDegreesPerTenth = 2, kNightElevation = -14;
