@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <png.h>
