@@ -130,17 +130,17 @@ Result<void> bench_frames(gi::Device& device, const BenchRun& run) {
         return {};
     };
     LUCARNE_TRY(open("nave", "micro"));
-    LUCARNE_ASSIGN(const auto micro, stage.frames_after(run.frames(5), glide));
+    LUCARNE_ASSIGN(const auto micro, stage.frames_after(run.frames(3), glide));
     figure("micro, nave, 1280x720, interactive, one bounce, the camera moves", 1e-3 * micro.milliseconds,
            "s");
     print_passes(micro);
 
     LUCARNE_TRY(open("nave-sky", "environment"));
-    LUCARNE_ASSIGN(const auto moving, stage.frames_after(run.frames(5), glide));
+    LUCARNE_ASSIGN(const auto moving, stage.frames_after(run.frames(3), glide));
     row("environment, nave-sky, 1280x720, interactive, the camera moves", 1e-3 * moving.milliseconds, "s",
         .6);
     print_passes(moving);
-    LUCARNE_ASSIGN(const auto sunny, stage.frames_after(run.frames(5), [&](int) -> Result<void> {
+    LUCARNE_ASSIGN(const auto sunny, stage.frames_after(run.frames(3), [&](int) -> Result<void> {
         gi::Scene scene = stage.pipeline().scene();
         for (gi::SceneLight& light : scene.lights) light.target.x += .01;
         return stage.pipeline().set_scene(std::move(scene));
@@ -153,28 +153,24 @@ Result<void> bench_frames(gi::Device& device, const BenchRun& run) {
 /// Measures the memory that a surfel takes beyond what `direct` needs: from the peaks of two sizes, so that
 /// what every process takes cancels out. On a processor OpenCL's buffers count as well.
 Result<void> bench_memory(const BenchRun& run) {
-    const auto growth = [&](const std::string& engine, double& millions) -> Result<double> {
-        double mebibytes = 0;
-        millions = 0;
-        for (const uint64_t points : {uint64_t{2'000'000}, uint64_t{500'000}}) {
-            LUCARNE_ASSIGN(const Scan scan, Scan::create("nave", run.points(points), run.folder));
-            LUCARNE_ASSIGN(const Usage used,
-                           run_lucarne({"render", scan.cache(), "--scene", scene_file("nave"), "--size",
-                                        "64x64", "--preset", preset(run, "high"), "--bounces", "1",
-                                        "--engine", engine, "-o", run.folder / "memory.png", "--overwrite"}));
-            const double sign = millions == 0 ? 1 : -1;
-            millions += sign * 1e-6 * static_cast<double>(run.points(points));
-            mebibytes += sign * used.peak_mebibytes;
+    const std::vector<std::string> engines = {"direct", "micro", "environment"};
+    std::vector<double> megabytes(engines.size());  // the larger scan's less the smaller's
+    double millions = 0;                            // likewise
+    for (const uint64_t points : {run.points(500'000), run.points(2'000'000)}) {
+        LUCARNE_ASSIGN(const Scan scan, Scan::create("nave", points, run.folder));
+        millions = 1e-6 * static_cast<double>(points) - millions;
+        for (size_t i = 0; i < engines.size(); ++i) {
+            LUCARNE_ASSIGN(
+                const Usage used,
+                run_lucarne({"render", scan.cache(), "--scene", scene_file("nave"), "--size", "64x64",
+                             "--preset", preset(run, "high"), "--bounces", "1", "--engine", engines[i], "-o",
+                             run.folder / "memory.png", "--overwrite"}));
+            megabytes[i] = 1.048576 * used.peak_mebibytes - megabytes[i];
         }
-        return mebibytes;
-    };
-    double millions = 0;
-    LUCARNE_ASSIGN(const double direct, growth("direct", millions));
-    for (const std::string engine : {"micro", "environment"}) {
-        LUCARNE_ASSIGN(const double own, growth(engine, millions));
-        row(engine + ", peak memory beyond that of direct, for a million surfels",
-            1.048576 * (own - direct) / std::max(millions, 1e-6), "MB", 190);
     }
+    for (size_t i = 1; i < engines.size(); ++i)
+        row(engines[i] + ", peak memory beyond that of direct, for a million surfels",
+            (megabytes[i] - megabytes[0]) / std::max(millions, 1e-6), "MB", 190);
     return {};
 }
 
