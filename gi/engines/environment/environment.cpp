@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
-#include <optional>
 #include <utility>
 #include <vector>
 

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 
 namespace lucarne::gi::environment {

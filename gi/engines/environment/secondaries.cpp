@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gi/gather/gather_point.h"
+#include "gi/shared/surfel.h"
 
 namespace lucarne::gi::environment {
 namespace {

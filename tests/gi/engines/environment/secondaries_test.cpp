@@ -1,12 +1,12 @@
 #include "gi/engines/environment/secondaries.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <gtest/gtest.h>
 
 #include "gi/engines/environment/primaries.h"
 #include "gi/gather/gather_point.h"
+#include "gi/shared/surfel.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/tree/flat_scenes.h"
 
