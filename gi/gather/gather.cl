@@ -298,6 +298,13 @@ void clear(Place place, float* directions, float* depths, uint* slots) {
     }
 }
 
+// Draws what is above a place.
+void draw_place(global const WideNode* nodes, Place place, uint seed, float* directions, float* depths, uint* slots) {
+    clear(place, directions, depths, slots);
+    draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, seed, depths,
+         slots);
+}
+
 // Returns the side that a pixel sees, twice the slot and one more for the back, if it sees any.
 uint seen_side(global const WideNode* nodes, Place place, const uint* slots, const float* depths, int pixel,
                float3 ray, float3 direction, float lift) {
@@ -328,9 +335,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
     Place place = place_of(nodes, point, rays, sets);
     float depths[PIXELS], directions[3 * PIXELS];
     uint slots[PIXELS];
-    clear(place, directions, depths, slots);
-    draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, point.seed,
-         depths, slots);
+    draw_place(nodes, place, point.seed, directions, depths, slots);
 
     float3 sum = (float3)(0.0f);
     uint cast = 0, empty = 0;
@@ -366,9 +371,7 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
     Place place = place_of(nodes, point, rays, sets);
     float depths[PIXELS], directions[3 * PIXELS];
     uint slots[PIXELS];
-    clear(place, directions, depths, slots);
-    draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, point.seed,
-         depths, slots);
+    draw_place(nodes, place, point.seed, directions, depths, slots);
 
     global uint* sees = seen + number * (uint)(GRID * GRID);
     float near = 0.0f;
@@ -417,8 +420,8 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
             } else if (sky.width > 0) {
                 radiance = sky_radiance(sky_texels, sky, direction);
             }
-            // Rays are drawn by the cosine. Of the part along the surface, which grows beyond bounds at the horizon,
-            // the last few degrees are left out.
+            // Rays are drawn by the cosine. The part along the surface would grow beyond bounds at the horizon, so it
+            // stays as it is there from the last six degrees on.
             float3 part = place.axis + (direction - ray.z * place.axis) / fmax(ray.z, 0.1f);
             red += radiance.x * part;
             green += radiance.y * part;

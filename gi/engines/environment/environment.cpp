@@ -38,13 +38,13 @@ constexpr EngineInfo kInfo{
     .reports_progress = true};
 
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
-constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 341 MiB
+constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 340 MB
 /// Places between which light is exchanged are this much farther apart than caches.
 constexpr float kCoarser = 4;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
-constexpr size_t kMostSecondariesHeld = 262144;  ///< likewise, 85 MB
+constexpr size_t kMostSecondariesHeld = 262144;  ///< their micro-buffers take 85 MB; more are not kept
 constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
 
@@ -131,8 +131,8 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
                                 [&](size_t slot) { return is_fine(tree, slot, frame.camera, spacing); });
         }
     }
-    LUCARNE_TRY(add_caches(frame, primaries, arriving));
-    if (s[kBruteForce]) caches_.clear();
+    caches_.clear();
+    if (!s[kBruteForce]) LUCARNE_TRY(add_caches(frame, primaries, arriving));
     LUCARNE_ASSIGN(const auto known, irradiance_at(frame, secondaries_.sides(), arriving));
     if (frame.stopped()) return {};
     const TimedPass pass(frame, "propagation");

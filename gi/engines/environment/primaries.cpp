@@ -181,11 +181,17 @@ std::vector<SidePlace> primary_places(const SurfelTree& tree, std::span<const Fl
                                       const CameraView& camera, std::span<const SurfacePoint> visible,
                                       float spacing, size_t most) {
     constexpr size_t kMostCandidates = size_t{1} << 20;
-    for (;; spacing *= 1.5f) {
+    constexpr int kRounds = 16;  // the last spacing is 400 times the first
+    for (int round = 0;; ++round, spacing *= 1.5f) {
         std::vector<SidePlace> found = collect(tree, surfels, camera, visible, spacing, kMostCandidates);
-        if (found.size() > kMostCandidates) continue;
+        const bool all = found.size() <= kMostCandidates;
+        if (!all && round < kRounds) continue;
         found = thinned(std::move(found), camera, spacing);
-        if (found.size() <= most) return found;
+        if (all && found.size() <= most) return found;
+        if (round < kRounds) continue;
+        // More surfels than that are about the camera itself.
+        found.resize(std::min(found.size(), most));
+        return found;
     }
 }
 
