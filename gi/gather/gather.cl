@@ -6,6 +6,7 @@
 // LUCARNE_GRID pixels a side about it, in rows of LUCARNE_ROW, which leave room for vectors of eight behind the last
 // pixel.
 #include "gi/gather/gather_point.h"
+#include "gi/gather/lobe.h"
 #include "gi/gather/sky_picture.h"
 #include "gi/tree/wide_node.h"
 
@@ -157,7 +158,11 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         // What the discs of the child rise above its middle: those of the point's own surface lie below the start.
         float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
         int8 above = (height > -rise) & (child != (int8)(kNoChild));
-        above &= dx * axis.x + dy * axis.y + dz * axis.z > -bound;
+        float8 along = dx * axis.x + dy * axis.y + dz * axis.z;
+        above &= along > -bound;
+        // Spheres beside the cone that the picture shows: sin(a + b) <= sin a + sin b.
+        if (scale < 1.0f)
+            above &= distance2 - along * along <= (sqrt(distance2) * scale + bound) * (sqrt(distance2) * scale + bound);
         int8 cloud = vload8(0, node->high_x) == (float8)(kCloud);
         float8 plane = dx * nx + dy * ny + dz * nz;
         int8 unsure = cloud | (plane * plane * bound * bound < LEAN * LEAN * thickness * thickness * distance2);
@@ -317,6 +322,12 @@ uint seen_side(global const WideNode* nodes, Place place, const uint* slots, con
     return 2 * slot + back;
 }
 
+// Returns the specular light of a side in a direction, W/(sr m^2).
+float3 specular(global const float* light, global const float* directions, uint side, float3 to) {
+    float3 sent = vload3(side, light);
+    return sent.x + sent.y + sent.z > 0.0f ? sent * lobe_radiance(sent, vload3(side, directions), to) : (float3)(0.0f);
+}
+
 float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction) {
     vec2 place = environment_place(direction, sky.rotation);
     uint x = min((uint)(place.x * sky.width), sky.width - 1u), y = min((uint)(place.y * sky.height), sky.height - 1u);
@@ -324,10 +335,11 @@ float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction
 }
 
 // For each point: the mean radiance of its rays, W/(sr m^2) (times pi: irradiance), and the share of rays that meet
-// nothing. `light`: six floats a slot, the radiance of its front and of its back; lit = 0: `nodes` only block. `sky`
-// shines where there is nothing; without texels it is dark.
-kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* sky_texels,
-                   SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
+// nothing. `light`: six floats a slot, the radiance of its front and of its back; lit = 0: `nodes` only block.
+// `lobe_light` and `lobe_directions`, likewise: what it sends out by specular lobes, if glossy is not 0. `sky` shines
+// where there is nothing; without texels it is dark.
+kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
+                   global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
                    global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
@@ -355,6 +367,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
             } else if (lit) {
                 uint side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift);
                 sum += weight * vload3(side, light);
+                if (glossy) sum += weight * specular(lobe_light, lobe_directions, side, -direction);
             }
         }
     results[number] = (float4)(sum / cast, (float)(empty) / cast);
@@ -397,8 +410,8 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
 // For each point: the light that it receives by what its buffer sees, as three vectors, for red, green and blue. The
 // product of a vector and a unit normal near the point's is the mean radiance for that normal, W/(sr m^2) (times pi:
 // irradiance). Arguments as above.
-kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* sky_texels,
-                  SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
+kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
+                  global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
                   global const uint* seen, global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
@@ -417,6 +430,7 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
             float3 radiance = (float3)(0.0f);
             if (code != kSeesSky) {
                 if (lit) radiance = vload3(code, light);
+                if (glossy) radiance += specular(lobe_light, lobe_directions, code, -direction);
             } else if (sky.width > 0) {
                 radiance = sky_radiance(sky_texels, sky, direction);
             }

@@ -65,6 +65,19 @@ Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> sl
     return light_.upload(0, bytes);
 }
 
+Result<void> Gatherer::set_lobes(ClDevice& device, const SlotLobes& lobes) {
+    glossy_ = false;
+    if (lobes.light.empty()) return {};
+    const auto light = std::as_bytes(std::span(lobes.light));
+    const auto directions = std::as_bytes(std::span(lobes.directions));
+    LUCARNE_TRY(device.reserve(lobe_light_, light.size(), "lobes of the tree"));
+    LUCARNE_TRY(device.reserve(lobe_directions_, directions.size(), "directions of lobes"));
+    LUCARNE_TRY(lobe_light_.upload(0, light));
+    LUCARNE_TRY(lobe_directions_.upload(0, directions));
+    glossy_ = true;
+    return {};
+}
+
 Result<void> Gatherer::set_sky(ClDevice& device, const GatherSky& sky) {
     sky_ = {sky.width, sky.height, sky.rotation, 0};
     if (sky.texels.empty()) return {};
@@ -99,7 +112,7 @@ Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed)
 Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points,
                               uint32_t side, uint64_t seed, std::span<glm::vec4> results,
                               const std::atomic<bool>* stop, const std::function<void(size_t)>& done) {
-    const auto [lit, sky] = asked(what);
+    const auto [lit, glossy, sky] = asked(what);
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
     LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid)));
@@ -112,6 +125,7 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
         const size_t count = std::min(launch.points, points.size() - first);
         LUCARNE_TRY(points_.upload(0, std::as_bytes(points.subspan(first, count))));
         LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit,
+                                glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,
                                 sky.width > 0 ? sky_texels_ : nodes_, sky, points_, rays_, kSets,
                                 static_cast<uint32_t>(count), results_));
         LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
@@ -121,7 +135,8 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
 }
 
 Gatherer::Asked Gatherer::asked(Gathered what) const {
-    return {what != Gathered::sky && !empty_, what != Gathered::light_of_surfels ? sky_ : SkyPicture{}};
+    const bool lit = what != Gathered::sky && !empty_;
+    return {lit, lit && glossy_, what != Gathered::light_of_surfels ? sky_ : SkyPicture{}};
 }
 
 Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points, uint32_t side,
@@ -161,12 +176,13 @@ Result<std::vector<LightVectors>> Gatherer::shade(ClDevice& device, Gathered wha
                                                   const MicroBuffers& buffers) {
     std::vector<LightVectors> result(buffers.count());
     if (result.empty()) return result;
-    const auto [lit, sky] = asked(what);
+    const auto [lit, glossy, sky] = asked(what);
     LUCARNE_TRY(make_rays(device, buffers.grid_, buffers.seed_));
     LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "shade", defines_for(buffers.grid_)));
     LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightVectors), "gathered light"));
     const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
     LUCARNE_TRY(kernel->run(ClRange(result.size(), launch.group), nodes_, lit ? light_ : nodes_, lit,
+                            glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,
                             sky.width > 0 ? sky_texels_ : nodes_, sky, buffers.points_, rays_, kSets,
                             static_cast<uint32_t>(result.size()), buffers.seen_, results_));
     LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(result))));

@@ -22,6 +22,11 @@ namespace lucarne::gi {
 /// Which light points gather.
 enum class Gathered : uint8_t { light_of_surfels, sky, both };
 
+/// The specular light of slots (lobe.h), W/m^2, side by side; no elements where nothing is glossy.
+struct SlotLobes {
+    std::vector<SideLight> light, directions;
+};
+
 /// Light that a point receives, for normals near its own: the product of a vector and a unit normal is the
 /// mean radiance, W/(sr m^2) (times pi: irradiance).
 struct LightVectors {
@@ -59,6 +64,9 @@ class Gatherer {
     Result<void> set_tree(ClDevice& device, const SurfelTree& tree);
     /// Sends the light of the tree's slots (pull_light()). Errors: device memory.
     Result<void> set_light(ClDevice& device, std::span<const SideLight> slots);
+    /// Sends specular light to the device, which the slots send out beside that of set_light() until it is
+    /// replaced. Errors: device memory.
+    Result<void> set_lobes(ClDevice& device, const SlotLobes& lobes);
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.
     Result<void> set_sky(ClDevice& device, const GatherSky& sky);
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
@@ -80,16 +88,16 @@ class Gatherer {
 
  private:
     struct Asked {
-        uint32_t lit;
+        uint32_t lit, glossy;
         SkyPicture sky;
     };
     /// Returns what a kernel needs to know of the light that is asked for.
     Asked asked(Gathered what) const;
     Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);
 
-    ClBuffer nodes_, light_, sky_texels_, points_, results_, rays_;
+    ClBuffer nodes_, light_, lobe_light_, lobe_directions_, sky_texels_, points_, results_, rays_;
     SkyPicture sky_{};
-    bool empty_ = true;
+    bool empty_ = true, glossy_ = false;
     uint32_t grid_ = 0;
     uint64_t seed_ = 0;
     uint64_t tree_ = 0;  ///< number of the tree

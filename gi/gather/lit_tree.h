@@ -17,14 +17,17 @@ class LitTree {
     /// memory, a shader that fails.
     Result<void> set_surfels(Frame& frame);
     /// Computes what the surfels emit, and what they reflect of these views of the lights. Errors likewise.
-    /// Specular reflection is spread evenly.
+    /// Specular reflection is not in own_light() but in lobes().
     Result<void> set_light(Frame& frame, const std::vector<LightView>& views, LightGBuffers& gbuffers);
 
     const SurfelTree& tree() const { return tree_; }
     std::span<const FlatSurfel> surfels() const { return surfels_; }
     /// Of each surfel: its radiance on both sides, W/(sr m^2).
     std::span<const SideLight> own_light() const { return own_; }
-    /// Of each surfel: the radiance that it sends out for each unit of irradiance, 1/sr.
+    /// Of each slot of the tree: what its surfels reflect of the lights by their specular lobes.
+    const SlotLobes& lobes() const { return lobes_; }
+    /// Of each surfel: the radiance that it sends out for each unit of irradiance, 1/sr; specular reflection
+    /// is spread evenly.
     std::span<const glm::vec3> reflectances() const { return reflectances_; }
 
  private:
@@ -32,7 +35,8 @@ class LitTree {
     std::vector<FlatSurfel> surfels_;
     std::vector<SideLight> own_;
     std::vector<glm::vec3> reflectances_;
-    Buffer flat_, irradiance_;
+    SlotLobes lobes_;
+    Buffer flat_, irradiance_, directions_;
 };
 
 }  // namespace lucarne::gi

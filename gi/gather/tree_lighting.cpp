@@ -56,7 +56,7 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
     Basis basis{scene_, cuts_, {}, settings.sky ? frame.index : 0};
     for (const LightView& view : views_) basis.lights.push_back(view.light);
     if (light_of_ == basis) {
-        if (replaced_) LUCARNE_TRY(gatherer_.set_light(*opencl_, slots_));
+        if (replaced_) LUCARNE_TRY(set_slots(slots_, lobes_));
         replaced_ = false;
         return {};
     }
@@ -72,7 +72,8 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
     LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
     if (frame.stopped()) return {};
     pull_light(lit_.tree(), light, slots_);
-    LUCARNE_TRY(gatherer_.set_light(*opencl_, slots_));
+    lobes_ = settings.bounces == 0 || !settings.only_last;
+    LUCARNE_TRY(set_slots(slots_, lobes_));
     replaced_ = false;
     light_of_ = std::move(basis);
     return {};
@@ -94,7 +95,12 @@ Result<void> TreeLighting::set_irradiance(std::span<const glm::vec3> irradiance,
         }
     });
     replaced_ = true;
-    return gatherer_.set_light(*opencl_, slots);
+    return set_slots(slots, own);
+}
+
+Result<void> TreeLighting::set_slots(std::span<const SideLight> slots, bool lobes) {
+    LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
+    return gatherer_.set_lobes(*opencl_, lobes ? lit_.lobes() : SlotLobes{});
 }
 
 Result<void> TreeLighting::add_direct(Frame& frame) {

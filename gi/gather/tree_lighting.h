@@ -57,6 +57,9 @@ class TreeLighting {
         bool operator==(const Basis&) const = default;
     };
 
+    /// Gives the gatherer this light, and if `lobes` what the surfels reflect of the lights by their lobes.
+    Result<void> set_slots(std::span<const SideLight> slots, bool lobes);
+
     ClDevice* opencl_ = nullptr;  ///< of the frame's device
     Gatherer gatherer_;
     Buffer materials_;
@@ -73,6 +76,7 @@ class TreeLighting {
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()
+    bool lobes_ = false;            ///< whether lobes belong to it
     bool replaced_ = false;         ///< the gatherer has other light
     std::vector<SideLight> own_slots_,
         reflecting_;  ///< the surfels' own light, and their reflectances, pulled

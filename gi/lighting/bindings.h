@@ -16,6 +16,7 @@ const uint kBindLitRadiance = 6u;
 const uint kBindSky = 7u;               // r, g, b of each texel
 const uint kBindLitSurfels = 5u;        // FlatSurfel[]; no shader binds materials as well
 const uint kBindSurfelIrradiance = 6u;  // of each surfel: r, g, b of its front, then of its back
+const uint kBindSurfelDirections = 7u;  // likewise x, y, z; no shader binds a sky as well
 
 #ifdef __cplusplus
 }  // namespace lucarne::gi::lighting

@@ -8,9 +8,11 @@ layout(local_size_x = 256) in;
 
 layout(std430, binding = kBindLitSurfels) readonly buffer Surfels { FlatSurfel surfels[]; };
 layout(std430, binding = kBindSurfelIrradiance) buffer Irradiance { float irradiance[]; };  // six a surfel
+layout(std430, binding = kBindSurfelDirections) buffer Directions { float directions[]; };  // likewise
 uniform uint count;
 uniform Light light;
 uniform uint face;  // the face of the light that light_view shows
+uniform uint directed;  // 1 if directions are wanted
 
 void main() {
     uint id = thread_number();
@@ -35,4 +37,9 @@ void main() {
     irradiance[at] += arriving.r;
     irradiance[at + 1u] += arriving.g;
     irradiance[at + 2u] += arriving.b;
+    if (directed == 0u) return;
+    vec3 toward = to_light * ((arriving.r + arriving.g + arriving.b) / 3.0);
+    directions[at] += toward.x;
+    directions[at + 1u] += toward.y;
+    directions[at + 2u] += toward.z;
 }
