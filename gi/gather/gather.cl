@@ -14,13 +14,12 @@
 #define ROW LUCARNE_ROW
 #define PIXELS (GRID * ROW)
 // Nodes are opened if their radius over their distance is larger. With buffers of 24^2 whole nodes are four pixels
-// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are noise. A curved
-// surface seen from the side may show either side; that of its plane would often be wrong.
-#define LARGEST_SURFACE fmin(4.0f / GRID, 0.2f)
-#define LARGEST_UNSURE fmin(2.0f / GRID, 0.1f)
-// The normals of a curved surface lean by about this times its thickness over its radius.
-#define LEAN 4.0f
-#define STACK 704  // seven a level; codes of 63 bits and 2^32 equal ones have at most 95 levels (SurfelTree)
+// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are opened further, and
+// so are surfaces whose discs might appear half a pixel from where they are.
+#define LARGEST fmin(4.0f / GRID, 0.2f)
+#define THICKEST (0.7f / GRID)
+#define LARGEST_THICK fmin(2.0f / GRID, 0.1f)
+#define STACK 456  // seven a level; trees of 2^32 surfels have at most 64 levels (kMedianLevel)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
 #define MOST_SHIFT 4.0f  // in lifts, see seen_slot()
@@ -165,8 +164,8 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
             above &= distance2 - along * along <= (sqrt(distance2) * scale + bound) * (sqrt(distance2) * scale + bound);
         int8 cloud = vload8(0, node->high_x) == (float8)(kCloud);
         float8 plane = dx * nx + dy * ny + dz * nz;
-        int8 unsure = cloud | (plane * plane * bound * bound < LEAN * LEAN * thickness * thickness * distance2);
-        float8 limit = select((float8)(LARGEST_SURFACE), (float8)(LARGEST_UNSURE), unsure) * scale;
+        int8 thick = cloud | (thickness * thickness > distance2 * (THICKEST * THICKEST * scale * scale));
+        float8 limit = select((float8)(LARGEST), (float8)(LARGEST_THICK), thick) * scale;
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         top = push(go, child, stack, top);
@@ -175,17 +174,22 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         nx = select(nx, dx * nearer, cloud);
         ny = select(ny, dy * nearer, cloud);
         nz = select(nz, dz * nearer, cloud);
-        // Directions to a disc differ from that to its middle by at most 2 sin(asin(s) / 2) < s (1 + .42 s^2).
-        float8 s = bound * nearer;
-        float8 extent = select(s * (1.0f + 0.42f * s * s), (float8)(2.0f), s >= 1.0f) * pixels + 0.5f;
-        float8 px = (dx * side.x + dy * side.y + dz * side.z) * nearer * pixels + (0.5f * GRID - 0.5f);
-        float8 py = (dx * across.x + dy * across.y + dz * across.z) * nearer * pixels + (0.5f * GRID - 0.5f);
+        // The picture of the cone about a sphere: its directions are c u + s v with unit vectors v across u.
+        float8 s = fmin(bound * nearer, 1.0f), c = sqrt(1.0f - s * s) * (0.5f * GRID / scale);
+        float8 ux = (dx * side.x + dy * side.y + dz * side.z) * nearer;
+        float8 uy = (dx * across.x + dy * across.y + dz * across.z) * nearer;
+        float8 px = ux * c + (0.5f * GRID - 0.5f), py = uy * c + (0.5f * GRID - 0.5f);
+        float8 wide = s * sqrt(fmax(1.0f - ux * ux, 0.0f)) * pixels + 0.5f;
+        float8 tall = s * sqrt(fmax(1.0f - uy * uy, 0.0f)) * pixels + 0.5f;
+        // Cones about the end of an axis reach to its end.
+        wide = select(wide, (float8)(2.0f * GRID), (s >= 1.0f) | (ux * ux + s * s > 1.0f));
+        tall = select(tall, (float8)(2.0f * GRID), (s >= 1.0f) | (uy * uy + s * s > 1.0f));
         float left[8], right[8], upper[8], lower[8], x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], planes[8];
         int draws[8];
-        vstore8(fmax(ceil(px - extent), 0.0f), 0, left);
-        vstore8(fmin(floor(px + extent), GRID - 1.0f), 0, right);
-        vstore8(fmax(ceil(py - extent), 0.0f), 0, upper);
-        vstore8(fmin(floor(py + extent), GRID - 1.0f), 0, lower);
+        vstore8(fmax(ceil(px - wide), 0.0f), 0, left);
+        vstore8(fmin(floor(px + wide), GRID - 1.0f), 0, right);
+        vstore8(fmax(ceil(py - tall), 0.0f), 0, upper);
+        vstore8(fmin(floor(py + tall), GRID - 1.0f), 0, lower);
         vstore8(dx, 0, x);
         vstore8(dy, 0, y);
         vstore8(dz, 0, z);

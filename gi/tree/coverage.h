@@ -45,6 +45,14 @@ class Coverage {
     }
     /// The covered points: bit 8 j + i is the point i along the axis after w, and j along the one after that.
     uint64_t covered() const { return covered_; }
+    /// Returns covered() and those points that at least three of the four covered neighbours surround: discs
+    /// that are not even leave gaps of one point in a surface without holes.
+    uint64_t closed() const {
+        constexpr uint64_t kFirstColumn = 0x0101010101010101u;
+        const uint64_t a = covered_ << 1 & ~kFirstColumn, b = (covered_ & ~kFirstColumn) >> 1;
+        const uint64_t c = covered_ << kSide, d = covered_ >> kSide;
+        return covered_ | (a & b & (c | d)) | (c & d & (a | b));
+    }
     /// Returns the share of those points for which inside(point) is true that are covered.
     template <class Inside>
     float share(const Inside& inside) const {

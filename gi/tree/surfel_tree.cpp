@@ -1,7 +1,6 @@
 #include "gi/tree/surfel_tree.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -13,47 +12,19 @@
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/tree/coverage.h"
+#include "gi/tree/division.h"
 #include "io/core/parallel.h"
-#include "octree/tree/radix_sort.h"
 
 namespace lucarne::gi {
 namespace {
 
-using octree::CodeIndex;
-
-constexpr uint32_t kAxisBits = 20, kMortonBits = 3 * kAxisBits, kCodeBits = kMortonBits + 3;
-constexpr size_t kTasks = 256;   // for the nodes of a level
-constexpr size_t kGrain = 1024;  // nodes or surfels that one task processes
+constexpr size_t kTasks = 256;  // for the nodes of a level
 /// Sheets closer together than about this share of their size are one.
 constexpr float kThinnest = 0.002f;
-/// A flat node is drawn whole if its surfels cover nearly all of it; else it has holes, or the end of its
-/// surface. Where points are not even, shares of few of them vary.
-constexpr float kFilled = 0.92f, kUneven = 0.4f;
 /// A node is a cloud if its thickness is over this share of its bound, and its normals agree less than this.
 constexpr float kThickCloud = 0.25f, kOneSurface = 0.8f;
 /// Radii of nodes that stand for nothing, so that no arithmetic on empty slots meets a NaN.
 constexpr float kFarAway = 1e18f;
-
-bool has_disc(const FlatSurfel& s) {
-    return s.radius > 0 && std::isfinite(s.radius) && (s.albedo & kSurfelHasNormal) != 0 &&
-           std::isfinite(s.x) && std::isfinite(s.y) && std::isfinite(s.z);
-}
-
-/// Returns which side of a cube a normal is nearest to: 0 to 5.
-uint64_t side_of(const glm::vec3& n) {
-    const glm::vec3 size = glm::abs(n);
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return static_cast<uint64_t>(2 * axis + (n[axis] < 0));
-}
-
-/// Puts two zero bits between the bits of a number of kAxisBits.
-uint64_t spread_bits(uint64_t v) {
-    v = (v | v << 32) & 0x1f00000000ffffull;
-    v = (v | v << 16) & 0x1f0000ff0000ffull;
-    v = (v | v << 8) & 0x100f00f00f00f00full;
-    v = (v | v << 4) & 0x10c30c30c30c30c3ull;
-    return (v | v << 2) & 0x1249249249249249ull;
-}
 
 struct Box {
     glm::vec3 low{kFarAway}, high{-kFarAway};
@@ -62,106 +33,6 @@ struct Box {
         high = glm::max(high, o.high);
     }
 };
-
-/// Returns the surfels with discs in the order of their codes: the side of a cube to which the normal is
-/// nearest, then the Morton code of the position within the common cube. Thus surfaces of several directions
-/// share no node but the root. A node of the edge of a box would have no plane, and the light of both sides
-/// would be seen from either.
-std::vector<CodeIndex> morton_order(std::span<const FlatSurfel> surfels) {
-    std::vector<CodeIndex> order;
-    glm::vec3 low(kFarAway), high(-kFarAway);
-    for (size_t i = 0; i < surfels.size(); ++i) {
-        const FlatSurfel& s = surfels[i];
-        if (!has_disc(s)) continue;
-        order.push_back({0, static_cast<uint32_t>(i)});
-        low = glm::min(low, glm::vec3(s.x, s.y, s.z));
-        high = glm::max(high, glm::vec3(s.x, s.y, s.z));
-    }
-    const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
-    const double cube = std::max({size.x, size.y, size.z, 1e-6});
-    const double scale = ((1u << kAxisBits) - 1) / cube;
-    parallel_ranges(order.size(), kGrain, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
-            const FlatSurfel& s = surfels[order[i].index];
-            const glm::dvec3 at = (glm::dvec3(s.x, s.y, s.z) - glm::dvec3(low)) * scale;
-            order[i].code = side_of(decode_octahedral(s.normal)) << kMortonBits |
-                            spread_bits(static_cast<uint64_t>(at.x)) |
-                            spread_bits(static_cast<uint64_t>(at.y)) << 1 |
-                            spread_bits(static_cast<uint64_t>(at.z)) << 2;
-        }
-    });
-    octree::sort_by_code(order, kCodeBits);
-    return order;
-}
-
-struct Range {
-    size_t first = 0, last = 0;
-    size_t count() const { return last - first; }
-};
-
-struct Parts {
-    std::array<Range, 8> ranges;
-    size_t count = 0;
-    void add(const Range& range) { ranges[count++] = range; }
-};
-
-/// Divides a range of at least two surfels: into single ones if there are at most `most`, else into the
-/// octants of the smallest cell that holds all. Surfels at one place are divided evenly.
-Parts parts_of(std::span<const CodeIndex> order, const Range& range, size_t most) {
-    Parts parts;
-    if (range.count() <= most) {
-        for (size_t i = range.first; i < range.last; ++i) parts.add({i, i + 1});
-        return parts;
-    }
-    const uint64_t differing = order[range.first].code ^ order[range.last - 1].code;
-    if (differing == 0) {
-        for (size_t k = 0; k < 8; ++k)
-            if (const size_t first = range.count() * k / 8, last = range.count() * (k + 1) / 8; last > first)
-                parts.add({range.first + first, range.first + last});
-        return parts;
-    }
-    const int shift = (std::bit_width(differing) - 1) / 3 * 3;
-    for (size_t first = range.first; first < range.last;) {
-        const uint64_t cell = order[first].code >> shift;
-        const auto rest = order.subspan(first, range.last - first);
-        const auto end = std::partition_point(
-            rest.begin(), rest.end(), [&](const CodeIndex& item) { return item.code >> shift == cell; });
-        const size_t last = first + static_cast<size_t>(end - rest.begin());
-        parts.add({first, last});
-        first = last;
-    }
-    return parts;
-}
-
-/// Divides a cell into up to eight cells: its octants, and as long as there is room the octants of the one
-/// with the most surfels. The cells of a flat surface are squares, which discs cover well; halves of cells
-/// would not be.
-Parts divide(std::span<const CodeIndex> order, const Range& range) {
-    Parts children;
-    children.add(range);
-    for (;;) {
-        const size_t room = 8 - children.count + 1;
-        size_t largest = 8;
-        Parts parts;
-        for (size_t k = 0; k < children.count; ++k) {
-            const Range& child = children.ranges[k];
-            if (child.count() < 2 || (largest < 8 && child.count() <= children.ranges[largest].count()))
-                continue;
-            const Parts candidate = parts_of(order, child, room);
-            if (candidate.count > room) continue;
-            largest = k;
-            parts = candidate;
-        }
-        if (largest == 8) return children;
-        // The parts take the place of the cell, so that the children keep the Morton order.
-        Parts next;
-        for (size_t k = 0; k < children.count; ++k) {
-            if (k != largest) next.add(children.ranges[k]);
-            for (size_t p = 0; k == largest && p < parts.count; ++p) next.add(parts.ranges[p]);
-        }
-        children = next;
-    }
-}
 
 /// Sums over a node's normals: of A n, and the symmetric matrix of A n n^T.
 struct Moments {
@@ -234,12 +105,11 @@ void cover_surface(std::span<const Disc> discs, const Box& squares, Summary& nod
         const glm::vec3 offset = disc.middle - node.middle;
         coverage.add(disc.middle - node.axis * glm::dot(offset, node.axis), disc.radius, node.axis);
     }
-    const float uneven = kUneven / std::sqrt(static_cast<float>(discs.size()));
     const float filled = coverage.share([&](const glm::vec3& p) {
         return glm::all(glm::greaterThanEqual(p, squares.low - margin)) &&
                glm::all(glm::lessThanEqual(p, squares.high + margin));
     });
-    if (filled < kFilled - uneven) node.mask = coverage.covered();
+    if (filled < 1) node.mask = coverage.closed();
 }
 
 /// Returns the share of its sphere that a cloud hides, the mean of three directions.
@@ -311,7 +181,7 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
 }
 
 /// Sets the nodes, level by level.
-void divide_all(SurfelTree& tree, std::span<const CodeIndex> order, std::span<const Disc> discs) {
+void divide_all(SurfelTree& tree, std::span<const FlatSurfel> surfels, std::span<PlacedSurfel> order) {
     std::vector<Range> level{{0, order.size()}};
     while (!level.empty()) {
         const size_t begin = tree.nodes.size();
@@ -320,22 +190,26 @@ void divide_all(SurfelTree& tree, std::span<const CodeIndex> order, std::span<co
         tree.surfels.resize(8 * tree.nodes.size(), kNoSurfel);
         tree.areas.resize(8 * tree.nodes.size());
         std::vector<Parts> children(level.size());
-        parallel_ranges(
-            level.size(), std::max<size_t>(1, level.size() / kTasks), [&](size_t first, size_t last) {
-                for (size_t i = first; i < last; ++i) {
-                    children[i] = divide(order, level[i]);
-                    for (size_t k = 0; k < children[i].count; ++k) {
-                        const Range& range = children[i].ranges[k];
-                        const bool leaf = range.count() == 1;
-                        const Summary child = summary_of(discs.subspan(range.first, range.count()));
-                        WideNode& node = tree.nodes[begin + i];
-                        set_child(node, k, child, leaf);
-                        node.child[k] = kLeafChild;  // nodes get their numbers below
-                        tree.areas[8 * (begin + i) + k] = child.area;
-                        if (leaf) tree.surfels[8 * (begin + i) + k] = order[range.first].index;
-                    }
-                }
-            });
+        parallel_ranges(level.size(), std::max<size_t>(1, level.size() / kTasks),
+                        [&](size_t first, size_t last) {
+                            std::vector<Disc> discs;
+                            for (size_t i = first; i < last; ++i) {
+                                children[i] = divide(order, level[i], tree.levels.size() - 1);
+                                for (size_t k = 0; k < children[i].count; ++k) {
+                                    const Range& range = children[i].ranges[k];
+                                    const bool leaf = range.count() == 1;
+                                    discs.clear();
+                                    for (const PlacedSurfel& s : order.subspan(range.first, range.count()))
+                                        discs.push_back(disc_of(surfels[s.index]));
+                                    const Summary child = summary_of(discs);
+                                    WideNode& node = tree.nodes[begin + i];
+                                    set_child(node, k, child, leaf);
+                                    node.child[k] = kLeafChild;  // nodes get their numbers below
+                                    tree.areas[8 * (begin + i) + k] = child.area;
+                                    if (leaf) tree.surfels[8 * (begin + i) + k] = order[range.first].index;
+                                }
+                            }
+                        });
         std::vector<Range> next;
         for (size_t i = 0; i < level.size(); ++i)
             for (size_t k = 0; k < children[i].count; ++k) {
@@ -361,14 +235,9 @@ WideNode empty_node() {
 
 SurfelTree build_tree(std::span<const FlatSurfel> surfels) {
     SurfelTree tree;
-    const std::vector<CodeIndex> order = morton_order(surfels);
+    std::vector<PlacedSurfel> order = place_surfels(surfels);
     tree.leaves = order.size();
-    if (order.empty()) return tree;
-    std::vector<Disc> discs(order.size());
-    parallel_ranges(order.size(), kGrain, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) discs[i] = disc_of(surfels[order[i].index]);
-    });
-    divide_all(tree, order, discs);
+    if (!order.empty()) divide_all(tree, surfels, order);
     return tree;
 }
 

@@ -8,6 +8,7 @@
 #include "gi/engines/reference/options.h"
 #include "gi/gather/gather_options.h"
 #include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/glossy_corner.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "tests/gi/on_device.h"
 
@@ -46,6 +47,18 @@ TEST_F(MicroEngineTest, GlossyWallsReflectALampAsInTheReference) {
         const AnalyticScene scene = room(material(0.5f, 0.4f, exponent, 0));
         const double found = mean_luminance(render(scene).radiance);
         EXPECT_NEAR(found / mean_luminance(render(scene, "reference").radiance), 1, 0.03) << exponent;
+    }
+}
+
+// Senders that spread their specular light evenly made this a third too bright.
+TEST_F(MicroEngineTest, GlossySendersSendTheLightOfASpotWhereTheirLobesPoint) {
+    for (const float exponent : {10.0f, 100.0f}) {
+        AnalyticScene scene = scenes::glossy_corner(exponent);
+        scene.settings.set(kMicroBuffer, 24);
+        scene.settings.set(kGatherEvery, 1);
+        scene.settings.set(reference::kSamples, 128);
+        const double truth = mean_luminance(render(scene, "reference").radiance);
+        EXPECT_NEAR(mean_luminance(render(scene).radiance) / truth, 1, 0.04) << exponent;
     }
 }
 

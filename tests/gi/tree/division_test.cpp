@@ -1,0 +1,82 @@
+#include "gi/tree/division.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+
+#include "gi/tree/coverage.h"
+#include "gi/tree/surfel_tree.h"
+#include "tests/gi/tree/flat_scenes.h"
+
+namespace lucarne::gi {
+namespace {
+
+FlatSurfel surfel_at(const glm::vec3& position) {
+    FlatSurfel surfel = flat::noisy_room(1).front();
+    surfel.x = position.x, surfel.y = position.y, surfel.z = position.z;
+    return surfel;
+}
+
+std::vector<FlatSurfel> square(int side) {
+    std::vector<FlatSurfel> surfels;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) surfels.push_back(surfel_at(glm::vec3(x, y, 0)));
+    return surfels;
+}
+
+TEST(Division, PartsOfASquareHaveTheSameSizeAndEverySurfelOnce) {
+    auto placed = place_surfels(square(64));
+    const Parts parts = divide(placed, {0, placed.size()}, 0);
+    ASSERT_EQ(parts.count, 8u);
+    std::set<uint32_t> seen;
+    for (size_t k = 0; k < parts.count; ++k) {
+        EXPECT_EQ(parts.ranges[k].count(), 512u) << k;
+        EXPECT_EQ(parts.ranges[k].first, 512 * k);
+    }
+    for (const PlacedSurfel& s : placed) seen.insert(s.index);
+    EXPECT_EQ(seen.size(), 64u * 64);
+}
+
+TEST(Division, FewSurfelsBecomeFullNodes) {
+    auto placed = place_surfels(square(7));
+    const Parts parts = divide(placed, {0, placed.size()}, 0);
+    ASSERT_EQ(parts.count, 7u);
+    size_t full = 0;
+    for (size_t k = 0; k < parts.count; ++k) full += parts.ranges[k].count() == 8;
+    EXPECT_EQ(full, 6u);
+}
+
+// Halves of lengths would cut off one surfel at a time here.
+TEST(Division, EndsForSurfelsThatCrowdTowardsAPoint) {
+    std::vector<FlatSurfel> surfels;
+    for (int i = 0; i < 4000; ++i)
+        surfels.push_back(surfel_at(glm::vec3(std::ldexp(1.0f, -(i % 120)), std::ldexp(1.0f, -(i % 97)), 0)));
+    const SurfelTree tree = build_tree(surfels);
+    EXPECT_EQ(tree.leaves, surfels.size());
+    EXPECT_LE(tree.levels.size(), kMedianLevel + 16);
+}
+
+TEST(Coverage, GapsOfOnePointCloseAndHolesStay) {
+    // Discs at all points of the grid but some.
+    const auto covered = [](auto left_out) {
+        Coverage coverage(2, glm::vec3(0.0f), glm::vec3(8, 8, 0), glm::vec3(0.0f), glm::vec3(0, 0, 1));
+        for (int j = 0; j < 8; ++j)
+            for (int i = 0; i < 8; ++i)
+                if (!left_out(i, j))
+                    coverage.add(glm::vec3(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f, 0),
+                                 0.3f, glm::vec3(0, 0, 1));
+        return coverage;
+    };
+    EXPECT_EQ(covered([](int i, int j) { return i == 3 && j == 5; }).closed(), ~uint64_t{0});
+    EXPECT_EQ(covered([](int i, int j) { return i == 0 && j == 5; }).closed(), ~uint64_t{0});
+    for (const Coverage& open :
+         {covered([](int i, int j) { return i / 2 == 1 && j / 2 == 2; }),
+          covered([](int i, int) { return i > 4; }), covered([](int i, int j) { return i == 0 && j == 0; })})
+        EXPECT_EQ(open.closed(), open.covered());
+}
+
+}  // namespace
+}  // namespace lucarne::gi
