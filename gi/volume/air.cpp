@@ -1,0 +1,95 @@
+#include "gi/volume/air.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/core/parallel.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+/// For a row of cells, `stride` apart: the largest of the distance along the row to a cell and of that cell's
+/// own distance, at the cell where it is least. Repeated over all axes this is the distance of
+/// Air::distance().
+void spread(std::vector<uint8_t>& distances, size_t first, size_t stride, int count,
+            std::vector<uint8_t>& row) {
+    row.resize(static_cast<size_t>(count));
+    for (int i = 0; i < count; ++i)
+        row[static_cast<size_t>(i)] = distances[first + static_cast<size_t>(i) * stride];
+    for (int i = 0; i < count; ++i) {
+        int least = row[static_cast<size_t>(i)];
+        for (int away = 1; away < least; ++away) {
+            if (i - away >= 0)
+                least = std::min(least, std::max<int>(away, row[static_cast<size_t>(i - away)]));
+            if (i + away < count)
+                least = std::min(least, std::max<int>(away, row[static_cast<size_t>(i + away)]));
+        }
+        distances[first + static_cast<size_t>(i) * stride] = static_cast<uint8_t>(least);
+    }
+}
+
+}  // namespace
+
+Air::Air(const Voxels& voxels) : grid_(voxels.grid()) {
+    const auto numbers = voxels.numbers();
+    distances_.resize(numbers.size());
+    std::ranges::transform(numbers, distances_.begin(),
+                           [](uint32_t number) { return number == Voxels::kAir ? 255 : 0; });
+    const glm::ivec3 size = grid_.size;
+    const size_t strides[] = {1, static_cast<size_t>(size.x), static_cast<size_t>(size.x) * size.y};
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        parallel_ranges(static_cast<size_t>(size[u]), 8, [&](size_t begin, size_t end) {
+            std::vector<uint8_t> row;
+            for (size_t i = begin; i < end; ++i)
+                for (size_t j = 0; j < static_cast<size_t>(size[v]); ++j)
+                    spread(distances_, i * strides[u] + j * strides[v], strides[axis], size[axis], row);
+        });
+    }
+}
+
+bool Air::sees(const glm::vec3& from, const glm::vec3& to) const {
+    const glm::vec3 way = to - from;
+    const glm::ivec3 most = grid_.size - 1;
+    glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(from)), glm::ivec3(0), most);
+    const glm::ivec3 end = glm::clamp(glm::ivec3(glm::floor(to)), glm::ivec3(0), most);
+    glm::ivec3 step;
+    glm::vec3 inverse;
+    for (int axis = 0; axis < 3; ++axis) {
+        step[axis] = way[axis] < 0 ? -1 : 1;
+        inverse[axis] = std::abs(way[axis]) > 1e-9f ? 1 / way[axis] : std::numeric_limits<float>::infinity();
+    }
+    // Crosses cubes of free cells at a time; ends when the last cell is in the cube.
+    const int limit = 3 * (most.x + most.y + most.z + 3);
+    for (int i = 0; i < limit; ++i) {
+        const int free = distances_[grid_.number(cell)];
+        if (free == 0) return false;
+        const glm::ivec3 away = glm::abs(end - cell);
+        if (std::max({away.x, away.y, away.z}) < free) return true;
+        float nearest = std::numeric_limits<float>::infinity();
+        int through = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::isinf(inverse[axis])) continue;
+            const int border = step[axis] > 0 ? cell[axis] + free : cell[axis] - free + 1;
+            const float at = (static_cast<float>(border) - from[axis]) * inverse[axis];
+            if (at >= nearest) continue;
+            nearest = at;
+            through = axis;
+        }
+        const glm::vec3 place = from + way * nearest;
+        glm::ivec3 next;
+        for (int axis = 0; axis < 3; ++axis) {
+            // The line never turns back, and stays in the cube along the other axes.
+            const int within = static_cast<int>(std::floor(place[axis]));
+            next[axis] = step[axis] > 0 ? std::clamp(within, cell[axis], cell[axis] + free - 1)
+                                        : std::clamp(within, cell[axis] - free + 1, cell[axis]);
+        }
+        next[through] = cell[through] + step[through] * free;
+        if (next[through] < 0 || next[through] > most[through]) return false;
+        cell = glm::clamp(next, glm::ivec3(0), most);
+    }
+    return false;
+}
+
+}  // namespace lucarne::gi::volume

@@ -1,0 +1,120 @@
+#include "gi/volume/voxels.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "gi/shared/brdf.h"
+#include "gi/shared/surfel_code.h"
+#include "gi/volume/disc_areas.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+constexpr size_t kSurfelsAPiece = 16384, kVoxelsAPiece = 1024;
+/// How many parts there may be, of 12 bytes each while they are made: some, and so many a surfel. A disc of a
+/// scan touches two voxels on the average.
+constexpr size_t kSomeParts = size_t{1} << 22, kPartsASurfel = 8;
+/// Of a disc, in voxels: those of a broken file would touch every voxel of the grid, one after the other.
+constexpr float kLargestRadius = 1024;
+
+struct CellPart {
+    uint32_t cell;
+    SurfelPart part;
+};
+
+/// Adds the parts of a surfel.
+void divide_surfel(const Grid& grid, std::span<const FlatSurfel> surfels, uint32_t number,
+                   std::vector<CellPart>& target) {
+    const FlatSurfel& surfel = surfels[number];
+    const float radius = std::min(surfel.radius, kLargestRadius * grid.voxel);
+    const size_t first = target.size();
+    float sum = 0;
+    for_each_voxel(grid, {surfel.x, surfel.y, surfel.z}, decode_octahedral(surfel.normal), radius,
+                   [&](const glm::ivec3& cell, float area) {
+                       sum += area;
+                       target.push_back({grid.number(cell), {number, area}});
+                   });
+    const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
+    for (size_t i = first; i < target.size(); ++i)
+        target[i].part.area =
+            sum > 0 ? target[i].part.area / sum * whole : whole / static_cast<float>(target.size() - first);
+}
+
+}  // namespace
+
+bool has_disc(const FlatSurfel& surfel) {
+    return surfel.radius > 0 && std::isfinite(surfel.radius) && std::isfinite(surfel.x) &&
+           std::isfinite(surfel.y) && std::isfinite(surfel.z) && (surfel.albedo & kSurfelHasNormal) != 0;
+}
+
+Grid grid_about(std::span<const FlatSurfel> surfels, uint32_t longest) {
+    using Box = std::pair<glm::vec3, glm::vec3>;
+    const glm::vec3 none(std::numeric_limits<float>::infinity());
+    std::vector<Box> boxes((surfels.size() + kSurfelsAPiece - 1) / kSurfelsAPiece, {none, -none});
+    parallel_ranges(surfels.size(), kSurfelsAPiece, [&](size_t first, size_t last) {
+        auto& [low, high] = boxes[first / kSurfelsAPiece];
+        for (size_t i = first; i < last; ++i) {
+            if (!has_disc(surfels[i])) continue;
+            const glm::vec3 middle(surfels[i].x, surfels[i].y, surfels[i].z);
+            low = glm::min(low, middle);
+            high = glm::max(high, middle);
+        }
+    });
+    glm::vec3 low = none, high = -none;
+    for (const auto& [least, most] : boxes) {
+        low = glm::min(low, least);
+        high = glm::max(high, most);
+    }
+    return low.x <= high.x ? grid_about(low, high, longest) : Grid{};
+}
+
+Result<Voxels> Voxels::divide(std::span<const FlatSurfel> surfels, const Grid& grid) {
+    Voxels voxels;
+    voxels.grid_ = grid;
+    voxels.numbers_.assign(grid.cells(), kAir);
+    const size_t pieces = (surfels.size() + kSurfelsAPiece - 1) / kSurfelsAPiece;
+    std::vector<std::vector<CellPart>> made(pieces);
+    const size_t most = kSomeParts + kPartsASurfel * surfels.size();
+    std::atomic<size_t> parts{0};
+    parallel_ranges(surfels.size(), kSurfelsAPiece, [&](size_t first, size_t last) {
+        auto& own = made[first / kSurfelsAPiece];
+        own.reserve(2 * (last - first));
+        size_t counted = 0;
+        for (size_t i = first; i < last && parts.load(std::memory_order_relaxed) <= most; ++i) {
+            if (!has_disc(surfels[i])) continue;
+            divide_surfel(grid, surfels, static_cast<uint32_t>(i), own);
+            if (own.size() - counted < kSurfelsAPiece && i + 1 < last) continue;
+            parts += own.size() - counted;
+            counted = own.size();
+        }
+    });
+    if (parts > most)
+        return failed("volume", fmt::format("the surfels' discs touch voxels more than {} times", most),
+                      "choose fewer voxels (--voxels) or more points");
+    // Surfels of a voxel stay in their order, because pieces and their parts are taken in theirs.
+    std::vector<uint32_t> counts(grid.cells(), 0);
+    for (const auto& piece : made)
+        for (const CellPart& part : piece) ++counts[part.cell];
+    voxels.starts_.push_back(0);
+    for (uint32_t cell = 0; cell < counts.size(); ++cell) {
+        if (counts[cell] == 0) continue;
+        voxels.numbers_[cell] = static_cast<uint32_t>(voxels.occupied_.size());
+        voxels.occupied_.push_back(cell);
+        voxels.starts_.push_back(voxels.starts_.back() + counts[cell]);
+    }
+    voxels.parts_.resize(voxels.starts_.back());
+    std::vector<size_t> next(voxels.starts_.begin(), voxels.starts_.end() - 1);
+    for (auto& piece : made) {
+        for (const CellPart& part : piece) voxels.parts_[next[voxels.numbers_[part.cell]]++] = part.part;
+        piece = {};
+    }
+    return voxels;
+}
+
+}  // namespace lucarne::gi::volume

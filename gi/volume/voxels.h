@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gi/shared/flat_surfel.h"
+#include "gi/volume/grid.h"
+#include "io/core/error.h"
+
+namespace lucarne::gi::volume {
+
+/// A part of a surfel in a voxel.
+struct SurfelPart {
+    uint32_t surfel = 0;
+    float area = 0;  ///< of the surfel's share of the surface, m^2
+};
+
+/// The surfels of each voxel. A surfel's area is shared out over all voxels that its disc touches, in
+/// proportion to the part of the disc inside them; so the areas of a surfel's parts add up to its own.
+class Voxels {
+ public:
+    static constexpr uint32_t kAir = 0xffffffffu;
+
+    /// Divides those surfels that have a disc: a normal, a radius over zero, and a place in the grid. The
+    /// result is the same whatever the number of threads. Errors: discs that together touch too many voxels.
+    static Result<Voxels> divide(std::span<const FlatSurfel> surfels, const Grid& grid);
+
+    const Grid& grid() const { return grid_; }
+    /// The cells of the occupied voxels, sorted by number. Occupied voxels are counted in this order.
+    std::span<const uint32_t> occupied() const { return occupied_; }
+    /// Returns the occupied voxel at a cell; kAir if nothing is there, or beyond the grid.
+    uint32_t at(const glm::ivec3& cell) const {
+        return grid_.holds(cell) ? numbers_[grid_.number(cell)] : kAir;
+    }
+    bool is_air(const glm::ivec3& cell) const { return at(cell) == kAir; }
+    /// By cell: the occupied voxel, or kAir.
+    std::span<const uint32_t> numbers() const { return numbers_; }
+    /// The parts of surfels in an occupied voxel, sorted by surfel.
+    std::span<const SurfelPart> parts(uint32_t voxel) const {
+        return std::span(parts_).subspan(starts_[voxel], starts_[voxel + 1] - starts_[voxel]);
+    }
+    size_t all_parts() const { return parts_.size(); }
+
+ private:
+    Grid grid_;
+    std::vector<uint32_t> numbers_;   ///< by cell
+    std::vector<uint32_t> occupied_;  ///< cells
+    std::vector<size_t> starts_;      ///< by occupied voxel: its first part; and the end
+    std::vector<SurfelPart> parts_;
+};
+
+/// Returns whether a surfel occupies voxels.
+bool has_disc(const FlatSurfel& surfel);
+
+/// Returns the grid about all discs, with `longest` voxels along its longest side; a grid without voxels if
+/// there is no disc.
+Grid grid_about(std::span<const FlatSurfel> surfels, uint32_t longest);
+
+}  // namespace lucarne::gi::volume

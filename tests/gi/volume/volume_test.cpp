@@ -1,0 +1,254 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "gi/volume/air.h"
+#include "gi/volume/disc_areas.h"
+#include "gi/volume/faces.h"
+#include "gi/volume/voxels.h"
+#include "io/core/random.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/tree/flat_scenes.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+constexpr uint32_t kVoxels = 32;
+
+Voxels divided(const std::vector<FlatSurfel>& surfels, const Grid& grid) {
+    auto voxels = Voxels::divide(surfels, grid);
+    EXPECT_TRUE(voxels) << voxels.error().line();
+    return voxels ? std::move(*voxels) : Voxels{};
+}
+
+/// A square sheet with this normal about (1, 1, 1), in discs as small as voxels.
+std::vector<FlatSurfel> sheet(const glm::vec3& normal, float side, int n) {
+    const glm::vec3 helper = std::abs(normal.z) < .9f ? kZ : kX;
+    const glm::vec3 u = side * glm::normalize(glm::cross(helper, normal)), v = glm::cross(normal, u);
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, glm::vec3(1) - .5f * (u + v), u, v, n, glm::vec3(.5f));
+    return flat::of(surfels);
+}
+
+TEST(DiscAreas, PartsOfADiscAreThoseOfItsOctagon) {
+    const Grid grid{glm::vec3(0), 0.25f, glm::ivec3(8)};
+    Random random(1);
+    const auto uniform = [&] { return static_cast<float>(random.uniform()); };
+    for (int i = 0; i < 200; ++i) {
+        const glm::vec3 normal = glm::normalize(glm::vec3(uniform(), uniform(), uniform()) - .5f);
+        const glm::vec3 middle = glm::vec3(.8f) + .4f * glm::vec3(uniform(), uniform(), uniform());
+        const float radius = .5f * uniform() + .01f;
+        float sum = 0;
+        std::map<uint32_t, float> parts;
+        for_each_voxel(grid, middle, normal, radius, [&](const glm::ivec3& cell, float area) {
+            sum += area;
+            EXPECT_TRUE(parts.emplace(grid.number(cell), area).second) << "a voxel twice";
+        });
+        const float octagon = 8 * std::tan(3.14159265f / 8) * radius * radius / (.25f * .25f);
+        // Voxels overlap by the width within which they count as touched.
+        EXPECT_LE(sum / octagon, 1.04f);
+        EXPECT_GE(sum, .999f * octagon);
+        // Points of the disc lie in voxels that it touches.
+        glm::vec3 u = glm::normalize(glm::cross(normal, std::abs(normal.x) < .9f ? kX : kY));
+        const glm::vec3 v = glm::cross(normal, u);
+        for (int k = 0; k < 50; ++k) {
+            const float r = radius * std::sqrt(uniform()), phi = 6.2831853f * uniform();
+            const glm::vec3 at = middle + r * (std::cos(phi) * u + std::sin(phi) * v);
+            EXPECT_TRUE(parts.contains(grid.number(glm::ivec3(grid.place(at)))));
+        }
+    }
+}
+
+TEST(DiscAreas, AHalfOfADiscLiesOnEitherSideOfItsMiddle) {
+    const Grid grid{glm::vec3(-1), 1, glm::ivec3(2)};
+    for_each_voxel(grid, glm::vec3(0, -.5f, -.5f), kZ, .3f, [&](const glm::ivec3& cell, float area) {
+        EXPECT_EQ(cell.y, 0);
+        EXPECT_EQ(cell.z, 0);
+        EXPECT_NEAR(area, .5f * 8 * std::tan(3.14159265f / 8) * .09f, 1e-3f);
+    });
+}
+
+TEST(Voxels, AreasOfPartsAddUpToThoseOfTheSurfels) {
+    const auto surfels = flat::noisy_room(20000);
+    const Voxels voxels = divided(surfels, grid_about(surfels, kVoxels));
+    std::vector<double> areas(surfels.size(), 0);
+    for (uint32_t voxel = 0; voxel < voxels.occupied().size(); ++voxel)
+        for (const SurfelPart& part : voxels.parts(voxel)) areas[part.surfel] += part.area;
+    for (size_t i = 0; i < surfels.size(); ++i) ASSERT_NEAR(areas[i] / surfels[i].area, 1, 1e-4);
+}
+
+TEST(Voxels, SurfelsWithoutADiscTakeNoRoom) {
+    auto surfels = flat::square(4, 1);
+    surfels[0].radius = 0;
+    surfels[1].radius = NAN;
+    surfels[2].x = INFINITY;
+    surfels[3].albedo &= ~kSurfelHasNormal;
+    const std::vector<FlatSurfel> none(surfels.begin(), surfels.begin() + 4);
+    EXPECT_EQ(grid_about(none, kVoxels), Grid{});
+    EXPECT_TRUE(divided(none, Grid{}).occupied().empty());
+    const Voxels voxels = divided(surfels, grid_about(surfels, kVoxels));
+    for (uint32_t voxel = 0; voxel < voxels.occupied().size(); ++voxel)
+        for (const SurfelPart& part : voxels.parts(voxel)) EXPECT_GE(part.surfel, 4u);
+}
+
+TEST(Voxels, DiscsThatAreFarTooLargeAreAnErrorAndNotAFlood) {
+    auto surfels = flat::square(200, 1);
+    for (FlatSurfel& s : surfels) s.radius = 1e30f;
+    const auto voxels = Voxels::divide(surfels, grid_about(surfels, 64));
+    ASSERT_FALSE(voxels);
+    EXPECT_NE(voxels.error().line().find("--voxels"), std::string::npos);
+}
+
+TEST(Voxels, AreTheSameForAnyNumberOfThreads) {
+    const auto surfels = flat::noisy_room(50000);
+    const Grid grid = grid_about(surfels, kVoxels);
+    const Voxels all = divided(surfels, grid);
+    const ThreadLimit limit(1);
+    const Voxels one = divided(surfels, grid);
+    ASSERT_EQ(all.occupied().size(), one.occupied().size());
+    for (uint32_t voxel = 0; voxel < all.occupied().size(); ++voxel)
+        EXPECT_TRUE(std::ranges::equal(all.parts(voxel), one.parts(voxel), [](auto& a, auto& b) {
+            return a.surfel == b.surfel && a.area == b.area;
+        }));
+}
+
+/// Counts the air cells that are reached from a cell by steps to any of 26 neighbours.
+std::vector<uint8_t> flood(const Voxels& voxels, const glm::ivec3& from) {
+    const Grid& grid = voxels.grid();
+    std::vector<uint8_t> reached(grid.cells(), 0);
+    std::vector<glm::ivec3> waiting = {from};
+    reached[grid.number(from)] = 1;
+    while (!waiting.empty()) {
+        const glm::ivec3 cell = waiting.back();
+        waiting.pop_back();
+        for (int i = 0; i < 27; ++i) {
+            const glm::ivec3 next = cell + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+            if (!grid.holds(next) || !voxels.is_air(next) || reached[grid.number(next)]) continue;
+            reached[grid.number(next)] = 1;
+            waiting.push_back(next);
+        }
+    }
+    return reached;
+}
+
+TEST(Voxels, WallsOfAnyDirectionStopDiagonalSteps) {
+    Random random(2);
+    const auto uniform = [&] { return static_cast<float>(random.uniform()); };
+    for (int i = 0; i < 30; ++i) {
+        glm::vec3 normal = glm::normalize(glm::vec3(uniform(), uniform(), uniform()) - .5f);
+        if (i == 0) normal = kZ;
+        if (i == 1) normal = glm::normalize(glm::vec3(1, 0, 1));
+        if (i == 2) normal = glm::normalize(glm::vec3(1, 1, 1));
+        const auto surfels = sheet(normal, 4, 200);
+        // A grid inside the sheet, in whose borders and diagonals the wall may lie.
+        const Grid grid{glm::vec3(.5f), 1.0f / 16, glm::ivec3(16)};
+        const Voxels voxels = divided(surfels, grid);
+        const auto front = glm::ivec3(normal.x > 0 ? 15 : 0, normal.y > 0 ? 15 : 0, normal.z > 0 ? 15 : 0);
+        if (!voxels.is_air(front)) continue;
+        const auto reached = flood(voxels, front);
+        for (uint32_t cell = 0; cell < grid.cells(); ++cell)
+            if (reached[cell]) {
+                EXPECT_GT(glm::dot(grid.middle(grid.cell(cell)) - glm::vec3(1), normal), 0) << i;
+            }
+    }
+}
+
+TEST(Air, SeesNothingThroughASealedRoom) {
+    const auto surfels = flat::noisy_room(20000);
+    const Voxels voxels = divided(surfels, grid_about(surfels, kVoxels));
+    const Air air(voxels);
+    const auto inside = flood(voxels, voxels.grid().size / 2);
+    Random random(4);
+    std::vector<glm::vec3> in, out;
+    for (uint32_t cell = 0; cell < inside.size(); ++cell) {
+        if (voxels.numbers()[cell] != Voxels::kAir) continue;
+        const glm::vec3 jitter(random.uniform(), random.uniform(), random.uniform());
+        (inside[cell] ? in : out).push_back(glm::vec3(voxels.grid().cell(cell)) + jitter);
+    }
+    ASSERT_GT(in.size(), 1000u);
+    ASSERT_GT(out.size(), 100u);
+    for (size_t i = 0; i < 20000; ++i) {
+        const glm::vec3 &a = in[i % in.size()], &b = in[(i * 7919) % in.size()];
+        EXPECT_TRUE(air.sees(a, b));
+        EXPECT_FALSE(air.sees(a, out[(i * 104729) % out.size()]));
+        EXPECT_FALSE(air.sees(out[(i * 104729) % out.size()], a));
+    }
+}
+
+TEST(Air, SkipsFreeVoxelsAndMissesNoOccupiedOne) {
+    const auto surfels = sheet(glm::normalize(glm::vec3(1, 2, .4f)), 1, 60);
+    const Voxels voxels = divided(surfels, Grid{glm::vec3(0), 1.0f / 16, glm::ivec3(32)});
+    const Air air(voxels);
+    Random random(5);
+    size_t blocked = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const auto place = [&] {
+            return 32.0f * glm::vec3(random.uniform(), random.uniform(), random.uniform());
+        };
+        const glm::vec3 from = place(), to = place();
+        bool free = true;
+        for (int k = 0; k <= 4000; ++k)
+            free &= voxels.is_air(glm::ivec3(glm::mix(from, to, static_cast<float>(k) / 4000)));
+        // Fine steps may miss a corner that the line cuts, never the other way round.
+        EXPECT_TRUE(free || !air.sees(from, to));
+        blocked += !free;
+    }
+    EXPECT_GT(blocked, 100u);
+}
+
+TEST(Faces, ShowTheWholeSurfaceOnce) {
+    for (const glm::vec3 normal :
+         {kZ, glm::normalize(glm::vec3(1, 0, 3)), glm::normalize(glm::vec3(2, 3, 4))}) {
+        const auto surfels = sheet(normal, 1, 80);
+        const Faces faces = Faces::find(divided(surfels, grid_about(surfels, kVoxels)), surfels);
+        double front = 0, back = 0;
+        for (const Face& face : faces.all()) {
+            if (face.area == 0) continue;
+            EXPECT_NEAR(std::abs(glm::dot(face.normal, normal)), 1, 1e-3);
+            EXPECT_NEAR(glm::dot(face.position - glm::vec3(1), normal), 0, 1e-3);
+            (glm::dot(face.normal, normal) > 0 ? front : back) += face.area;
+        }
+        EXPECT_NEAR(front, 1, .03);
+        EXPECT_NEAR(back, 1, .03);
+    }
+}
+
+TEST(Faces, OfAThinWallShowTheSheetOnTheirSide) {
+    // Two sheets of a wall, .4 voxels apart: each faces away from the other.
+    std::vector<Surfel> surfels;
+    const float gap = .4f / 29;
+    scenes::add_rectangle(surfels, kO, kX, kY, 90, glm::vec3(.8f));
+    scenes::add_rectangle(surfels, -gap * kZ, kY, kX, 90, glm::vec3(.2f));
+    const auto flat = flat::of(surfels);
+    const Faces faces = Faces::find(divided(flat, grid_about(flat, kVoxels)), flat);
+    const auto upper =
+        faces.means<float>([&](uint32_t s, bool) { return surfels[s].albedo.x > .5f ? 1.0f : 0.0f; });
+    for (uint32_t face = 0; face < faces.all().size(); ++face) {
+        if (axis_of(faces.all()[face].side) != 2) continue;
+        EXPECT_NEAR(upper[face], sign_of(faces.all()[face].side) > 0 ? 1 : 0, 1e-5) << face;
+    }
+}
+
+TEST(Faces, OfASealedRoomShowNothingThatIsLitFromOutside) {
+    const auto surfels = flat::noisy_room(20000);
+    const Voxels voxels = divided(surfels, grid_about(surfels, kVoxels));
+    const Faces faces = Faces::find(voxels, surfels);
+    const auto inside = flood(voxels, voxels.grid().size / 2);
+    const auto backs = faces.means<float>([](uint32_t, bool back) { return back ? 1.0f : 0.0f; });
+    size_t inner = 0;
+    for (uint32_t face = 0; face < faces.all().size(); ++face) {
+        const Face& f = faces.all()[face];
+        const glm::ivec3 air = voxels.grid().cell(voxels.occupied()[f.voxel]) + step_of(f.side);
+        if (!voxels.grid().holds(air) || !inside[voxels.grid().number(air)]) continue;
+        ++inner;
+        EXPECT_EQ(backs[face], 0) << "normals point into the room";
+    }
+    EXPECT_GT(inner, 3000u);
+}
+
+}  // namespace
+}  // namespace lucarne::gi::volume
