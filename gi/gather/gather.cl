@@ -6,7 +6,7 @@
 // LUCARNE_GRID pixels a side about it, in rows of LUCARNE_ROW, which leave room for vectors of eight behind the last
 // pixel.
 #include "gi/gather/gather_point.h"
-#include "gi/gather/lobe.h"
+#include "gi/shared/lobe.h"
 #include "gi/gather/sky_picture.h"
 #include "gi/tree/wide_node.h"
 

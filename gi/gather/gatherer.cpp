@@ -65,7 +65,7 @@ Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> sl
     return light_.upload(0, bytes);
 }
 
-Result<void> Gatherer::set_lobes(ClDevice& device, const SlotLobes& lobes) {
+Result<void> Gatherer::set_lobes(ClDevice& device, const SideLobes& lobes) {
     glossy_ = false;
     if (lobes.light.empty()) return {};
     const auto light = std::as_bytes(std::span(lobes.light));

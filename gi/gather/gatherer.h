@@ -22,11 +22,6 @@ namespace lucarne::gi {
 /// Which light points gather.
 enum class Gathered : uint8_t { light_of_surfels, sky, both };
 
-/// The specular light of slots (lobe.h), W/m^2, side by side; no elements where nothing is glossy.
-struct SlotLobes {
-    std::vector<SideLight> light, directions;
-};
-
 /// Light that a point receives, for normals near its own: the product of a vector and a unit normal is the
 /// mean radiance, W/(sr m^2) (times pi: irradiance).
 struct LightVectors {
@@ -66,7 +61,7 @@ class Gatherer {
     Result<void> set_light(ClDevice& device, std::span<const SideLight> slots);
     /// Sends specular light to the device, which the slots send out beside that of set_light() until it is
     /// replaced. Errors: device memory.
-    Result<void> set_lobes(ClDevice& device, const SlotLobes& lobes);
+    Result<void> set_lobes(ClDevice& device, const SideLobes& lobes);
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.
     Result<void> set_sky(ClDevice& device, const GatherSky& sky);
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:

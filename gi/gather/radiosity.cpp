@@ -153,7 +153,7 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
     for (uint32_t bounce = 0; bounce < settings.bounces; ++bounce) {
         pull_light(scene.tree(), last, slots);
         LUCARNE_TRY(gatherer.set_light(device, slots));
-        const SlotLobes lobes = bounce == 0 ? scene.lobes() : SlotLobes{};
+        const SideLobes lobes = bounce == 0 ? scene.lobes() : SideLobes{};
         LUCARNE_TRY(gatherer.set_lobes(device, lobes));
         LUCARNE_TRY(gather(Gathered::light_of_surfels, bounce));
         if (stop && *stop) return {};

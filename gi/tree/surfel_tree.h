@@ -9,16 +9,11 @@
 #include <glm/vec3.hpp>
 
 #include "gi/shared/flat_surfel.h"
+#include "gi/shared/side_light.h"
 #include "gi/tree/wide_node.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi {
-
-/// Light that leaves a surfel or a node: radiance, W/(sr m^2), of its front (the side of its axis) and of its
-/// back.
-struct SideLight {
-    glm::vec3 front{0.0f}, back{0.0f};
-};
 
 /// A tree over the discs of surfels with up to eight children a node. Its nodes are ranges of the Morton
 /// order, in order of their level: parents stand before their children.

@@ -1,4 +1,4 @@
-#include "gi/gather/lobe.h"
+#include "gi/shared/lobe.h"
 
 #include <cmath>
 

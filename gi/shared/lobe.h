@@ -3,8 +3,8 @@
 // to which it goes, each times the lobe's mean cosine and the mean of its three colours. The longer the sum
 // of directions, the narrower is the lobe; Toksvig 2005, "Mipmapping normal maps", widens lobes by the length
 // of mean normals alike.
-#ifndef LUCARNE_GI_GATHER_LOBE_H
-#define LUCARNE_GI_GATHER_LOBE_H
+#ifndef LUCARNE_GI_SHARED_LOBE_H
+#define LUCARNE_GI_SHARED_LOBE_H
 
 #include "gi/shared/brdf.h"
 
