@@ -6,13 +6,14 @@
 #include "gi/engines/micro/micro.h"
 #include "gi/engines/reference/reference.h"
 #include "gi/engines/unlit/unlit.h"
+#include "gi/engines/volume/volume.h"
 #include "gi/engines/vpl/vpl.h"
 #include "gi/registry.h"
 
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array all = {direct_engine(),      vpl_engine(),       micro_engine(),
+    static const std::array all = {direct_engine(),      vpl_engine(),       volume_engine(), micro_engine(),
                                    environment_engine(), reference_engine(), unlit_engine()};
     return all;
 }

@@ -2,14 +2,13 @@
 
 #include <cassert>
 
+#include "gi/tracing/light_sampling.h"
+
 namespace lucarne::gi::volume {
 
 Polygon octagon_about(const Grid& grid, const glm::vec3& position, const glm::vec3& normal, float radius) {
-    // Two unit vectors across the normal (Duff et al. 2017, "Building an orthonormal basis, revisited").
-    const float sign = std::copysign(1.0f, normal.z);
-    const float a = -1.0f / (sign + normal.z), b = normal.x * normal.y * a;
-    const glm::vec3 u(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
-    const glm::vec3 v(b, sign + normal.y * normal.y * a, -normal.y);
+    glm::vec3 u, v;
+    tracing::frame_of(normal, u, v);
     const glm::vec3 middle = grid.place(position);
     const float reach = radius / grid.voxel;
     constexpr float kTangent = 0.41421356f;  // of 22.5 degrees: half a side of an octagon about a unit circle

@@ -11,9 +11,10 @@
 namespace lucarne::gi::volume {
 namespace {
 
-constexpr size_t kVoxelsATask = 512;
+constexpr size_t kVoxelsATask = 512, kFacesATask = 1024;
 /// Discs of one wall touch up to this many layers of voxels below the one that borders on air.
 constexpr int kLayersBelow = 2;
+constexpr uint32_t kNoFace = Faces::kNone;
 /// A sheet that covers this share of a voxel's face hides what is below it.
 constexpr float kHiding = 0.25f;
 /// A sheet is as thick as the radius of its surfels, but at least and at most so many voxels. What is half as
@@ -26,75 +27,115 @@ constexpr float kSteepest = 0.17f;
 struct Candidate {
     uint32_t surfel;
     bool back;
+    bool beside;  ///< see Owned
     float area;
     float radius;
     glm::vec3 position, normal;  ///< the normal is that of the side
     float height = 0;            ///< along the mean normal, m
 };
 
-/// The faces of some voxels, before they are numbered.
-struct Found {
-    std::vector<Face> faces;
-    std::vector<Faces::Shown> shown;
-    std::vector<size_t> ends;  ///< by face
+/// A voxel whose surfels a face stands for. Of one beside it, in which a wall stands, only the areas count:
+/// on the other side of the wall there may be other light.
+struct Owned {
+    uint32_t voxel;
+    bool beside;
+};
+struct Owners {
+    std::vector<size_t> starts;  ///< by face, and the end
+    std::vector<Owned> voxels;   ///< sorted by face and voxel
 };
 
+/// Returns the face that shows what belongs to a side of a voxel: its own, that of a voxel above it, or,
+/// where a wall stands on its voxel, that of one beside it. kNoFace if it is hidden.
+uint32_t owner_of(const Voxels& voxels, const Faces& faces, const glm::ivec3& cell, int side, bool& beside) {
+    const auto face_at = [&](const glm::ivec3& at) {
+        const uint32_t voxel = voxels.at(at);
+        return voxel == Voxels::kAir ? kNoFace : faces.at(voxel, side);
+    };
+    const glm::ivec3 up = step_of(side);
+    beside = false;
+    for (int layer = 0; layer <= kLayersBelow; ++layer)
+        if (const uint32_t face = face_at(cell + layer * up); face != kNoFace) return face;
+    beside = true;
+    const glm::ivec3 u = step_of(2 * ((axis_of(side) + 1) % 3)), v = step_of(2 * ((axis_of(side) + 2) % 3));
+    for (const glm::ivec3& way : {u, -u, v, -v, u + v, u - v, v - u, -u - v})
+        for (const int layer : {0, 1, -1})
+            if (const uint32_t face = face_at(cell + way + layer * up); face != kNoFace) return face;
+    return kNoFace;
+}
+
+Owners find_owners(const Voxels& voxels, const Faces& faces) {
+    struct Owner {
+        uint32_t face = kNoFace;
+        bool beside = false;
+    };
+    const size_t count = voxels.occupied().size();
+    std::vector<std::array<Owner, kSides>> owners(count);
+    parallel_ranges(count, kVoxelsATask, [&](size_t first, size_t last) {
+        for (size_t voxel = first; voxel < last; ++voxel)
+            for (int side = 0; side < kSides; ++side) {
+                Owner& owner = owners[voxel][static_cast<size_t>(side)];
+                const glm::ivec3 cell = voxels.grid().cell(voxels.occupied()[voxel]);
+                owner.face = owner_of(voxels, faces, cell, side, owner.beside);
+            }
+    });
+    Owners found;
+    found.starts.assign(faces.all().size() + 1, 0);
+    for (const auto& sides : owners)
+        for (const Owner& owner : sides)
+            if (owner.face != kNoFace) ++found.starts[owner.face + 1];
+    for (size_t i = 1; i < found.starts.size(); ++i) found.starts[i] += found.starts[i - 1];
+    found.voxels.resize(found.starts.back());
+    std::vector<size_t> next(found.starts.begin(), found.starts.end() - 1);
+    for (uint32_t voxel = 0; voxel < count; ++voxel)
+        for (const Owner& owner : owners[voxel])
+            if (owner.face != kNoFace) found.voxels[next[owner.face]++] = {voxel, owner.beside};
+    return found;
+}
+
+/// Finds what faces show.
 class Finder {
  public:
     Finder(const Voxels& voxels, std::span<const FlatSurfel> surfels) : voxels_(voxels), surfels_(surfels) {}
 
-    void add_voxel(uint32_t voxel, Found& found) {
-        const Grid& grid = voxels_.grid();
-        const glm::ivec3 cell = grid.cell(voxels_.occupied()[voxel]);
-        for (int side = 0; side < kSides; ++side) {
-            if (!voxels_.is_air(cell + step_of(side))) continue;
-            add_face(voxel, cell, side, found);
+    /// Sets what a face shows; `owned`: the voxels that it stands for.
+    void set_face(Face& face, std::span<const Owned> owned, std::vector<Faces::Shown>& shown) {
+        const glm::vec3 outward = face.normal;
+        collect(owned, face.side);
+        const bool own = std::ranges::any_of(candidates_, [](const Candidate& c) { return !c.beside; });
+        if (!own) {
+            candidates_.clear();
+            collect_slanted(face.voxel, face.side, outward);
         }
+        if (candidates_.empty()) return;
+        weigh_outermost(mean_normal(outward));
+        float all = 0, sum = 0;
+        glm::vec3 position(0.0f);
+        for (const Candidate& c : candidates_) {
+            all += c.area;
+            sum += c.beside ? 0 : c.area;
+            position += c.area * c.position;
+        }
+        if (!(sum > 0)) return;
+        face.normal = mean_normal(outward);
+        face.position = position / all;
+        if (own) face.area = all;
+        for (const Candidate& c : candidates_)
+            if (c.area > 0 && !c.beside) shown.push_back({c.surfel, c.back ? 1u : 0u, c.area / sum});
     }
 
  private:
-    void add_face(uint32_t voxel, const glm::ivec3& cell, int side, Found& found) {
-        const Grid& grid = voxels_.grid();
-        glm::vec3 outward(0.0f);
-        outward[axis_of(side)] = static_cast<float>(sign_of(side));
-        Face face{.voxel = voxel,
-                  .side = side,
-                  .position = grid.middle(cell) + 0.5f * grid.voxel * outward,
-                  .normal = outward};
-        collect(cell, side);
-        const bool own = !candidates_.empty();
-        if (!own) collect_slanted(voxel, side, outward);
-        if (!candidates_.empty()) {
-            face.normal = mean_normal(outward);
-            weigh_outermost(face.normal);
-            face.normal = mean_normal(outward);
-            float sum = 0;
-            glm::vec3 position(0.0f);
-            for (const Candidate& c : candidates_) {
-                sum += c.area;
-                position += c.area * c.position;
-            }
-            if (sum > 0) {
-                face.position = position / sum;
-                if (own) face.area = sum;
-                for (const Candidate& c : candidates_)
-                    if (c.area > 0) found.shown.push_back({c.surfel, c.back ? 1u : 0u, c.area / sum});
-            }
-        }
-        found.faces.push_back(face);
-        found.ends.push_back(found.shown.size());
-    }
-
-    /// Collects the sides that belong to a side of this voxel and of those below it.
-    void collect(glm::ivec3 cell, int side) {
+    /// Collects the sides of surfels that belong to this side of voxels.
+    void collect(std::span<const Owned> owned, int side) {
         candidates_.clear();
-        for (int layer = 0; layer <= kLayersBelow; ++layer, cell -= step_of(side)) {
-            const uint32_t voxel = voxels_.at(cell);
-            if (voxel == Voxels::kAir) return;
+        for (const auto& [voxel, beside] : owned) {
+            const glm::ivec3 cell = voxels_.grid().cell(voxels_.occupied()[voxel]);
             for (const SurfelPart& part : voxels_.parts(voxel)) {
                 const glm::vec3 normal = decode_octahedral(surfels_[part.surfel].normal);
                 const int axis = largest_axis(normal);
-                if (axis == axis_of(side)) add(part, cell, normal, side_of(axis, normal[axis]) != side, 1);
+                if (axis != axis_of(side)) continue;
+                add(part, cell, normal, side_of(axis, normal[axis]) != side, 1);
+                candidates_.back().beside = beside;
             }
         }
     }
@@ -117,8 +158,8 @@ class Finder {
         const glm::vec3 middle(surfel.x, surfel.y, surfel.z), low = grid.position(glm::vec3(cell));
         glm::vec3 position = glm::clamp(middle, low, low + grid.voxel);
         position -= normal * glm::dot(normal, position - middle);
-        candidates_.push_back({part.surfel, back, share * part.area, std::min(surfel.radius, grid.voxel),
-                               position, back ? -normal : normal});
+        candidates_.push_back({part.surfel, back, false, share * part.area,
+                               std::min(surfel.radius, grid.voxel), position, back ? -normal : normal});
     }
 
     glm::vec3 mean_normal(const glm::vec3& outward) const {
@@ -159,26 +200,49 @@ class Finder {
 
 }  // namespace
 
-Faces Faces::find(const Voxels& voxels, std::span<const FlatSurfel> surfels) {
-    const size_t count = voxels.occupied().size();
-    std::vector<Found> pieces((count + kVoxelsATask - 1) / kVoxelsATask);
-    parallel_ranges(count, kVoxelsATask, [&](size_t first, size_t last) {
-        Finder finder(voxels, surfels);
-        for (size_t voxel = first; voxel < last; ++voxel)
-            finder.add_voxel(static_cast<uint32_t>(voxel), pieces[first / kVoxelsATask]);
-    });
-    Faces faces;
+/// Numbers the sides that border on air, in the order of their voxels.
+void Faces::number(const Voxels& voxels) {
+    const Grid& grid = voxels.grid();
     std::array<uint32_t, kSides> none;
     none.fill(kNone);
-    faces.numbers_.assign(count, none);
-    faces.starts_.push_back(0);
-    for (Found& piece : pieces) {
-        const size_t before = faces.shown_.size();
-        for (const Face& face : piece.faces) {
-            faces.numbers_[face.voxel][static_cast<size_t>(face.side)] =
-                static_cast<uint32_t>(faces.faces_.size());
-            faces.faces_.push_back(face);
+    numbers_.assign(voxels.occupied().size(), none);
+    for (uint32_t voxel = 0; voxel < numbers_.size(); ++voxel) {
+        const glm::ivec3 cell = grid.cell(voxels.occupied()[voxel]);
+        for (int side = 0; side < kSides; ++side) {
+            const glm::vec3 outward(step_of(side));
+            if (!voxels.is_air(cell + step_of(side))) continue;
+            numbers_[voxel][static_cast<size_t>(side)] = static_cast<uint32_t>(faces_.size());
+            faces_.push_back({.voxel = voxel,
+                              .side = side,
+                              .position = grid.middle(cell) + 0.5f * grid.voxel * outward,
+                              .normal = outward});
         }
+    }
+}
+
+Faces Faces::find(const Voxels& voxels, std::span<const FlatSurfel> surfels) {
+    Faces faces;
+    faces.number(voxels);
+    const Owners owners = find_owners(voxels, faces);
+    const size_t count = faces.faces_.size();
+    struct Piece {
+        std::vector<Shown> shown;
+        std::vector<size_t> ends;  ///< by face
+    };
+    std::vector<Piece> pieces((count + kFacesATask - 1) / kFacesATask);
+    parallel_ranges(count, kFacesATask, [&](size_t first, size_t last) {
+        Finder finder(voxels, surfels);
+        Piece& piece = pieces[first / kFacesATask];
+        for (size_t i = first; i < last; ++i) {
+            const size_t begin = owners.starts[i], end = owners.starts[i + 1];
+            finder.set_face(faces.faces_[i], std::span(owners.voxels).subspan(begin, end - begin),
+                            piece.shown);
+            piece.ends.push_back(piece.shown.size());
+        }
+    });
+    faces.starts_.push_back(0);
+    for (Piece& piece : pieces) {
+        const size_t before = faces.shown_.size();
         for (const size_t end : piece.ends) faces.starts_.push_back(before + end);
         faces.shown_.insert(faces.shown_.end(), piece.shown.begin(), piece.shown.end());
         piece = {};

@@ -25,8 +25,8 @@ struct Face {
 
 /// All faces of the occupied voxels that border on air. A face shows those sides of surfels whose normals are
 /// nearest to its own: a side of a surfel belongs to one face, so the two sides of a thin wall stay apart.
-/// Where discs touch several layers of voxels, a face also shows what lies below it. Of several sheets above
-/// each other it shows the outermost.
+/// Where discs touch several layers of voxels, a face also shows what lies below it, and beside it where a
+/// wall stands on the next voxel. Of several sheets above each other it shows the outermost.
 class Faces {
  public:
     static constexpr uint32_t kNone = 0xffffffffu;
@@ -62,6 +62,7 @@ class Faces {
     }
 
  private:
+    void number(const Voxels& voxels);
     template <class Body>
     void parallel_over_faces(const Body& body) const {
         parallel_ranges(faces_.size(), 1024, [&](size_t first, size_t last) {

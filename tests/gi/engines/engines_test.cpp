@@ -10,6 +10,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/environment/options.h"
 #include "gi/engines/reference/options.h"
+#include "gi/engines/volume/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/gather/gather_options.h"
 #include "gi/shared/brdf.h"
@@ -26,6 +27,9 @@ void fine_vpls(EngineSettings& settings) {
     settings.set(vpl::kVpls, 1024);
     settings.set(vpl::kInterleave, 1);
     settings.set(vpl::kAtlas, 2048);
+}
+void fine_voxels(EngineSettings& settings) {
+    settings.set(volume::kVoxelCount, 32);
 }
 void fine_buffers(EngineSettings& settings) {
     settings.set(kMicroBuffer, 24);
@@ -52,6 +56,7 @@ struct Claims {
 };
 constexpr Claims kClaims[] = {{"direct", false, false},
                               {"vpl", true, true, .03, .015, .04, .03, fine_vpls},
+                              {"volume", true, true, .05, .015, .02, .05, fine_voxels},
                               {"micro", true, true, .03, .015, .04, .03, fine_buffers},
                               {"environment", true, true, .03, .015, .04, .03, fine_caches},
                               {"reference", true, true, .03, .003, .03, .01, many_paths}};

@@ -1,0 +1,208 @@
+#include "gi/engines/volume/first_bounce.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "gi/shared/brdf.h"
+#include "gi/shared/luminance.h"
+#include "gi/tracing/light_sampling.h"
+#include "gi/tree/coverage.h"
+#include "gi/volume/disc_areas.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+constexpr size_t kReceiversAtOnce = 8192, kReceiversATask = 128;
+/// A cluster is small enough if its radius is at most this share of its distance.
+constexpr float kOpening = 0.3f;
+/// Length of the mean normal of a cluster that may stand for its faces: their normals lie within some 25
+/// degrees of it.
+constexpr float kOneDirection = 0.9f;
+/// Faces nearer than so many times their side have the form factor of a square, others that of a point.
+constexpr float kNearby = 4;
+/// What reaches less far above a plane lies in it, in voxels.
+constexpr float kInPlane = 1e-3f;
+/// Lines of sight begin and end at least this far from the sides of a voxel.
+constexpr float kInside = 0.1f;
+
+}  // namespace
+
+float form_factor(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& middle,
+                  const glm::vec3& square_normal, float area) {
+    if (!(glm::dot(square_normal, position - middle) > 0)) return 0;
+    glm::vec3 u, v;
+    tracing::frame_of(square_normal, u, v);
+    const float half = 0.5f * std::sqrt(area);
+    Polygon square;
+    for (const glm::vec3& corner : {half * (u + v), half * (v - u), -half * (u + v), half * (u - v)})
+        square.add(middle + corner - position);
+    // What is below the horizon of the surface is cut off.
+    Polygon above;
+    for (size_t i = 0; i < square.count; ++i) {
+        const glm::vec3 &from = square.corners[i], &to = square.corners[(i + 1) % square.count];
+        const float before = glm::dot(from, normal), after = glm::dot(to, normal);
+        if (before >= 0) above.add(from);
+        if ((before >= 0) != (after >= 0)) above.add(from + (to - from) * (before / (before - after)));
+    }
+    float sum = 0;
+    for (size_t i = 0; i < above.count; ++i) {
+        const glm::vec3 &from = above.corners[i], &to = above.corners[(i + 1) % above.count];
+        const glm::vec3 across = glm::cross(from, to);
+        const float sine = glm::length(across);
+        if (!(sine > 0)) continue;
+        sum += std::atan2(sine, glm::dot(from, to)) * glm::dot(across, normal) / sine;
+    }
+    return std::abs(sum) / (2 * kPi);
+}
+
+FirstBounce::FirstBounce(const Space& space) : space_(space) {
+    const auto faces = space.faces.all();
+    const Grid& grid = space.grid();
+    for (uint32_t i = 0; i < faces.size(); ++i) {
+        const Face& face = faces[i];
+        const glm::ivec3 cell = space.cell_before(face);
+        const glm::vec3 low(cell);
+        glm::vec3 place = glm::clamp(grid.place(face.position), low + kInside, low + (1 - kInside));
+        const int axis = axis_of(face.side);
+        place[axis] = low[axis] + 0.5f;
+        places_.push_back(place);
+    }
+}
+
+void FirstBounce::begin(std::span<const glm::vec3> radiance) {
+    const auto all = space_.faces.all();
+    std::vector<uint32_t> lit;
+    for (uint32_t face = 0; face < all.size(); ++face)
+        if (all[face].area > 0 && luminance(radiance[face]) > 0) lit.push_back(face);
+    std::ranges::stable_sort(lit, {}, [&](uint32_t face) { return all[face].side; });
+    clusters_.clear();
+    clusters_.reserve(2 * lit.size());
+    if (!lit.empty()) add_cluster(radiance, lit);
+    irradiance_.assign(space_.faces.all().size(), glm::vec3(0.0f));
+    done_ = 0;
+}
+
+/// Adds the cluster of some faces, which become sorted, and those that it consists of.
+void FirstBounce::add_cluster(std::span<const glm::vec3> radiance, std::span<uint32_t> faces) {
+    const auto all = space_.faces.all();
+    Cluster cluster{.low = glm::vec3(INFINITY),
+                    .high = glm::vec3(-INFINITY),
+                    .faces = static_cast<uint32_t>(faces.size())};
+    float weights = 0;
+    for (const uint32_t i : faces) {
+        const Face& face = all[i];
+        const glm::vec3 power = radiance[i] * face.area;
+        const float weight = luminance(power);
+        // A square in the plane of the face reaches so far along each axis.
+        const glm::vec3 reach =
+            0.7f * std::sqrt(face.area) * glm::sqrt(glm::max(1.0f - face.normal * face.normal, 0.0f));
+        cluster.low = glm::min(cluster.low, face.position - reach);
+        cluster.high = glm::max(cluster.high, face.position + reach);
+        cluster.middle += weight * face.position;
+        cluster.normal += weight * face.normal;
+        cluster.power += power;
+        cluster.area += face.area;
+        weights += weight;
+    }
+    cluster.middle /= weights;
+    cluster.normal /= weights;
+    float nearest = INFINITY;
+    for (const uint32_t i : faces) {
+        const float away = glm::distance(all[i].position, cluster.middle);
+        cluster.radius = std::max(cluster.radius, away + 0.7f * std::sqrt(all[i].area));
+        if (away >= nearest) continue;
+        nearest = away;
+        cluster.face = i;
+    }
+    clusters_.push_back(cluster);
+    if (faces.size() == 1) return;
+    const size_t half = divide(faces);
+    add_cluster(radiance, faces.first(half));
+    add_cluster(radiance, faces.subspan(half));
+}
+
+/// Returns how many of the faces, which become sorted, the first half of a cluster consists of: those of some
+/// sides, or one half of the cluster's longest extent.
+size_t FirstBounce::divide(std::span<uint32_t> faces) const {
+    const auto all = space_.faces.all();
+    const auto side = [&](uint32_t face) { return all[face].side; };
+    if (side(faces.front()) != side(faces.back())) {
+        // They are sorted by side until only one is left.
+        const int border = std::max(side(faces[faces.size() / 2]), side(faces.front()) + 1);
+        return static_cast<size_t>(std::ranges::lower_bound(faces, border, {}, side) - faces.begin());
+    }
+    glm::vec3 low(INFINITY), high(-INFINITY);
+    for (const uint32_t face : faces) {
+        low = glm::min(low, all[face].position);
+        high = glm::max(high, all[face].position);
+    }
+    const int axis = largest_axis(high - low);
+    const size_t half = faces.size() / 2;
+    std::ranges::nth_element(faces, faces.begin() + static_cast<ptrdiff_t>(half), {},
+                             [&](uint32_t face) { return std::pair(all[face].position[axis], face); });
+    return half;
+}
+
+/// Returns how far the box of a cluster reaches from a position along a direction, m.
+float FirstBounce::farthest(const Cluster& cluster, const glm::vec3& position, const glm::vec3& along) {
+    const glm::vec3 low = cluster.low - position, high = cluster.high - position;
+    return std::max(low.x * along.x, high.x * along.x) + std::max(low.y * along.y, high.y * along.y) +
+           std::max(low.z * along.z, high.z * along.z);
+}
+
+glm::vec3 FirstBounce::gather(uint32_t number) const {
+    const Face& face = space_.faces.all()[number];
+    glm::vec3 sum(0.0f);
+    for (size_t i = 0; i < clusters_.size();) {
+        const Cluster& cluster = clusters_[i];
+        const size_t next = i + 2 * size_t{cluster.faces} - 1;  // beyond all of its clusters
+        const glm::vec3 way = cluster.middle - face.position;
+        const float distance2 = glm::dot(way, way);
+        const bool one = cluster.faces == 1;
+        const float length2 = glm::dot(cluster.normal, cluster.normal);
+        const float spread = std::sqrt(std::max(1 - length2, 0.0f) * distance2);
+        const float in_plane = kInPlane * space_.grid().voxel;
+        if (farthest(cluster, face.position, face.normal) < in_plane ||
+            farthest(cluster, face.position, -cluster.normal) + spread < in_plane) {
+            i = next;  // all of it is below the horizon, or faces away
+            continue;
+        }
+        const bool small = cluster.radius * cluster.radius < kOpening * kOpening * distance2;
+        if (!one && !(small && length2 > kOneDirection * kOneDirection)) {
+            ++i;
+            continue;
+        }
+        i = next;
+        float factor = 0;
+        if (one && distance2 < kNearby * kNearby * cluster.area) {
+            factor = form_factor(face.position, face.normal, cluster.middle, cluster.normal, cluster.area) *
+                     kPi / cluster.area;
+        } else {
+            const float above = glm::dot(way, face.normal), facing = -glm::dot(way, cluster.normal);
+            // A disc on its axis (Howell's catalogue, B-13), which is smaller than its solid angle by this
+            // much.
+            const float disc = distance2 * (distance2 + cluster.area / kPi);
+            if (above > 0 && facing > 0) factor = above * facing / disc;
+        }
+        if (!(factor > 0)) continue;
+        if (space_.air.sees(places_[number], places_[cluster.face])) sum += factor * cluster.power;
+    }
+    return sum;
+}
+
+bool FirstBounce::advance() {
+    const size_t all = clusters_.empty() ? 0 : irradiance_.size();
+    const size_t end = std::min(all, done_ + kReceiversAtOnce);
+    parallel_ranges(end - std::min(done_, end), kReceiversATask, [&](size_t first, size_t last) {
+        for (size_t i = done_ + first; i < done_ + last; ++i)
+            irradiance_[i] = gather(static_cast<uint32_t>(i));
+    });
+    done_ = end;
+    return done_ < all;
+}
+
+}  // namespace lucarne::gi::volume

@@ -1,0 +1,218 @@
+#include "gi/engines/volume/light_maker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "gi/bounce_options.h"
+#include "gi/engines/volume/options.h"
+#include "gi/host_frame.h"
+#include "gi/shared/brdf.h"
+#include "gi/shared/environment.h"
+#include "gi/shared/luminance.h"
+#include "gi/tracing/light_sampling.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+/// Texels of the sky that one direction stands for.
+constexpr int kSkySamples = 32;
+
+/// Returns the mean radiance of the sky about the direction that light with this `way` comes from, over as
+/// large a part of the sphere as one of `directions` stands for.
+glm::vec3 sky_about(const GatherSky& sky, const glm::vec3& way, size_t directions) {
+    if (sky.texels.empty()) return glm::vec3(0.0f);
+    const float drop = 2.0f / static_cast<float>(std::max<size_t>(directions, 1));  // 1 - cosine of the cap
+    glm::vec3 u, v, sum(0.0f);
+    tracing::frame_of(-way, u, v);
+    for (int i = 0; i < kSkySamples; ++i) {
+        const float cosine = 1 - drop * (static_cast<float>(i) + 0.5f) / kSkySamples;
+        const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+        const float phi = 2.39996323f * static_cast<float>(i);  // the golden angle
+        const glm::vec3 direction =
+            glm::normalize(u * (sine * std::cos(phi)) + v * (sine * std::sin(phi)) - way * cosine);
+        const glm::vec2 place = environment_place(direction, sky.rotation);
+        const auto x = static_cast<size_t>(place.x * static_cast<float>(sky.width));
+        const auto y = static_cast<size_t>(place.y * static_cast<float>(sky.height));
+        sum +=
+            sky.texels[std::min<size_t>(y, sky.height - 1) * sky.width + std::min<size_t>(x, sky.width - 1)];
+    }
+    return sum / static_cast<float>(kSkySamples);
+}
+
+Basis without_frame(Basis basis) {
+    basis.frame = 0;
+    return basis;
+}
+
+}  // namespace
+
+void LightMaker::begin(Basis basis, const EngineSettings& settings) {
+    basis_ = std::move(basis);
+    const int32_t only = settings[kOnlyBounce];
+    last_ = only >= 0 ? static_cast<uint32_t>(only) : settings[kBounces];
+    first_shown_ = only >= 0 ? last_ : 1;
+    sweep_count_ = settings[kSweepDirections];
+    voxel_count_ = settings[kVoxelCount];
+    seed_ = settings[kSeed];
+    views_done_ = 0;
+    sweeping_ = false;
+    const auto step = [this](auto function) {
+        return [this, function](Work& work) { return (this->*function)(work); };
+    };
+    std::vector<Step<Work>> steps = {
+        {"surfels", step(&LightMaker::take_surfels)}, {"voxels", step(&LightMaker::divide)},
+        {"faces", step(&LightMaker::find_faces)},     {"surfel light", step(&LightMaker::light_surfels)},
+        {"sky", step(&LightMaker::sweep_sky)},        {"first bounce", step(&LightMaker::gather_first)}};
+    for (uint32_t bounce = 2; bounce <= last_; ++bounce)
+        steps.push_back({"sweep", [this, bounce](Work& work) { return sweep_bounce(work, bounce); }});
+    runner_.start(std::move(steps));
+}
+
+bool LightMaker::goes_on(const Basis& now) const {
+    return running() && basis_.cuts.light == now.cuts.light && basis_.scene.bounds == now.scene.bounds &&
+           basis_.scene.settings == now.scene.settings;
+}
+
+Result<void> LightMaker::run(Frame& frame, const Inputs& inputs, const StepBudget& budget,
+                             VolumeLight& target) {
+    Work work{frame, inputs};
+    LUCARNE_TRY(runner_.run(work, budget, frame.stop));
+    if (runner_.running()) return {};
+    target = {basis_, space_, shown_};
+    return {};
+}
+
+Result<StepResult> LightMaker::take_surfels(Work& work) {
+    const SpaceBasis now{basis_.cuts.light, basis_.scene.bounds, voxel_count_};
+    if (space_of_ == now) return StepResult::skipped;
+    const TimedPass pass(work.frame, "surfels");
+    space_of_.reset();
+    own_of_.reset();
+    first_of_.reset();
+    sweeper_.reset();
+    first_bounce_.reset();
+    LUCARNE_TRY(surfels_.set_surfels(work.frame));
+    return StepResult::done;
+}
+
+Result<StepResult> LightMaker::divide(Work& work) {
+    if (space_of_) return StepResult::skipped;
+    const TimedPass pass(work.frame, "voxels");
+    space_ = std::make_shared<Space>();
+    const auto surfels = surfels_.surfels();
+    LUCARNE_ASSIGN(space_->voxels, Voxels::divide(surfels, grid_about(surfels, voxel_count_)));
+    return StepResult::done;
+}
+
+Result<StepResult> LightMaker::find_faces(Work& work) {
+    if (space_of_) return StepResult::skipped;
+    const TimedPass pass(work.frame, "faces");
+    space_->faces = Faces::find(space_->voxels, surfels_.surfels());
+    space_->air = Air(space_->voxels);
+    sweeper_.emplace(*space_);
+    first_bounce_.emplace(*space_);
+    space_of_ = SpaceBasis{basis_.cuts.light, basis_.scene.bounds, voxel_count_};
+    return StepResult::done;
+}
+
+Result<StepResult> LightMaker::light_surfels(Work& work) {
+    if (own_of_ == without_frame(basis_)) {
+        sources_ = own_;
+        return StepResult::skipped;
+    }
+    const TimedPass pass(work.frame, "surfel light");
+    own_of_.reset();
+    first_of_.reset();
+    if (views_done_ == 0) LUCARNE_TRY(surfels_.begin_light(work.frame));
+    const auto& views = work.inputs.views;
+    if (views_done_ < views.size())
+        LUCARNE_TRY(surfels_.add_light(work.frame, views[views_done_++], work.inputs.gbuffers));
+    if (views_done_ < views.size()) return StepResult::again;
+    surfels_.end_light(work.frame);
+    light_faces();
+    own_of_ = without_frame(basis_);
+    return StepResult::done;
+}
+
+void LightMaker::light_faces() {
+    const auto own = surfels_.own_light();
+    const auto reflectances = surfels_.reflectances();
+    own_ = space_->faces.means<glm::vec3>(
+        [&](uint32_t surfel, bool back) { return back ? own[surfel].back : own[surfel].front; });
+    reflectances_ =
+        space_->faces.means<glm::vec3>([&](uint32_t surfel, bool) { return reflectances[surfel]; });
+    lit_faces_ = static_cast<size_t>(
+        std::ranges::count_if(own_, [](const glm::vec3& light) { return luminance(light) > 0; }));
+    sources_ = own_;
+}
+
+Directions LightMaker::directions(uint32_t bounce) const {
+    return even_directions(sweep_count_, mix64(mix64(seed_, basis_.frame), bounce));
+}
+
+/// Adds the first reflection of the sky to the sources.
+Result<StepResult> LightMaker::sweep_sky(Work& work) {
+    const GatherSky& sky = work.inputs.sky;
+    if (sky.texels.empty()) return StepResult::skipped;
+    const TimedPass pass(work.frame, "sky");
+    if (!sweeping_) {
+        const std::vector<glm::vec3> dark(space_->faces.all().size(), glm::vec3(0.0f));
+        sweeper_->begin(directions(0), dark, [&sky, count = sweep_count_](const glm::vec3& way) {
+            return sky_about(sky, way, count);
+        });
+    }
+    sweeping_ = sweeper_->advance();
+    if (sweeping_) return StepResult::again;
+    const auto light = reflected(sweeper_->irradiance());
+    for (size_t face = 0; face < sources_.size(); ++face) sources_[face] += light[face];
+    return StepResult::done;
+}
+
+Result<StepResult> LightMaker::gather_first(Work& work) {
+    // The sky's light differs in each frame, as its directions do.
+    const Basis now = work.inputs.sky.texels.empty() ? without_frame(basis_) : basis_;
+    if (first_of_ == now) {
+        add_bounce(1, first_bounce_->irradiance());
+        return StepResult::skipped;
+    }
+    const TimedPass pass(work.frame, "first bounce");
+    first_of_.reset();
+    if (!sweeping_) first_bounce_->begin(sources_);
+    sweeping_ = first_bounce_->advance();
+    if (sweeping_) return StepResult::again;
+    add_bounce(1, first_bounce_->irradiance());
+    first_of_ = now;
+    return StepResult::done;
+}
+
+Result<StepResult> LightMaker::sweep_bounce(Work& work, uint32_t bounce) {
+    const TimedPass pass(work.frame, "sweep");
+    if (!sweeping_)
+        sweeper_->begin(directions(bounce), sources_, [](const glm::vec3&) { return glm::vec3(0.0f); });
+    sweeping_ = sweeper_->advance();
+    if (sweeping_) return StepResult::again;
+    add_bounce(bounce, sweeper_->irradiance());
+    return StepResult::done;
+}
+
+/// Takes over what a bounce brought to the faces: pixels show it if they should, and the next bounce carries
+/// what is reflected.
+void LightMaker::add_bounce(uint32_t bounce, std::span<const glm::vec3> irradiance) {
+    if (bounce == 1) shown_.assign(irradiance.size(), glm::vec3(0.0f));
+    if (bounce >= first_shown_)
+        for (size_t face = 0; face < irradiance.size(); ++face) shown_[face] += irradiance[face];
+    sources_ = reflected(irradiance);
+}
+
+std::vector<glm::vec3> LightMaker::reflected(std::span<const glm::vec3> irradiance) const {
+    std::vector<glm::vec3> light(irradiance.size());
+    for (size_t face = 0; face < light.size(); ++face) light[face] = reflectances_[face] * irradiance[face];
+    return light;
+}
+
+}  // namespace lucarne::gi::volume

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/changes.h"
+#include "gi/engines/volume/first_bounce.h"
+#include "gi/engines/volume/space.h"
+#include "gi/engines/volume/sweep.h"
+#include "gi/gather/gather_sky.h"
+#include "gi/gl_frame.h"
+#include "gi/lighting/lit_surfels.h"
+#include "gi/steps.h"
+
+namespace lucarne::gi::volume {
+
+/// What the light in a volume is made from. Equal bases give equal light.
+struct Basis {
+    SceneRevisions scene;
+    LightCutRevisions cuts;
+    std::vector<Light> lights;  ///< of the views: samples of lights with a size differ in every frame
+    uint64_t frame = 0;         ///< Frame::index, which turns the directions of sweeps
+    bool operator==(const Basis&) const = default;
+};
+
+/// Light at the faces of the voxels, which pixels read.
+struct VolumeLight {
+    std::optional<Basis> basis;  ///< none: there is no light yet
+    std::shared_ptr<const Space> space;
+    std::vector<glm::vec3> irradiance;  ///< by face, of the bounces that were asked for, W/m^2
+};
+
+/// Makes a VolumeLight, step by step: divides the surfels among voxels, lights them, and carries the light
+/// from face to face, bounce by bounce. What did not change since the last time is not made again.
+class LightMaker {
+ public:
+    /// What the steps read beside the frame.
+    struct Inputs {
+        const std::vector<LightView>&
+            views;  ///< of the lights, and of what is too bright in the sky for sweeps
+        LightGBuffers& gbuffers;
+        const GatherSky& sky;  ///< what else shines in the sky
+    };
+
+    /// Starts again.
+    void begin(Basis basis, const EngineSettings& settings);
+    void stop() { runner_.cancel(); }
+    bool running() const { return runner_.running(); }
+    /// Whether what is being made may go on in a frame with another basis: lights may move meanwhile.
+    bool goes_on(const Basis& now) const;
+    /// Takes as many steps as the budget allows and until the frame is given up. Sets `target` when the last
+    /// one is done. Errors: device memory, a shader that fails, discs that touch too many voxels.
+    Result<void> run(Frame& frame, const Inputs& inputs, const StepBudget& budget, VolumeLight& target);
+
+    size_t lit_faces() const { return lit_faces_; }
+
+ private:
+    struct Work {
+        Frame& frame;
+        const Inputs& inputs;
+    };
+    /// What the voxels are made from.
+    struct SpaceBasis {
+        uint64_t light_cut = 0, bounds = 0;
+        uint32_t voxels = 0;
+        bool operator==(const SpaceBasis&) const = default;
+    };
+
+    Result<StepResult> take_surfels(Work& work);
+    Result<StepResult> divide(Work& work);
+    Result<StepResult> find_faces(Work& work);
+    Result<StepResult> light_surfels(Work& work);
+    void light_faces();
+    Result<StepResult> sweep_sky(Work& work);
+    Result<StepResult> gather_first(Work& work);
+    Result<StepResult> sweep_bounce(Work& work, uint32_t bounce);
+    void add_bounce(uint32_t bounce, std::span<const glm::vec3> irradiance);
+    std::vector<glm::vec3> reflected(std::span<const glm::vec3> irradiance) const;
+    Directions directions(uint32_t bounce) const;
+
+    StepRunner<Work> runner_;
+    Basis basis_;
+    uint32_t first_shown_ = 1, last_ = 1;  ///< the bounces that pixels show
+    uint32_t sweep_count_ = 64, voxel_count_ = 64;
+    uint64_t seed_ = 0;
+
+    LitSurfels surfels_;
+    std::shared_ptr<Space> space_;
+    std::optional<FirstBounce> first_bounce_;
+    std::optional<Sweeper> sweeper_;
+    std::optional<SpaceBasis> space_of_;
+    std::optional<Basis> own_of_, first_of_;  ///< what own_ and first_bounce_ were made from
+    size_t views_done_ = 0;
+    bool sweeping_ = false;  ///< the present step has begun
+
+    std::vector<glm::vec3> own_;           ///< by face: radiance before any bounce but of the sky, W/(sr m^2)
+    std::vector<glm::vec3> reflectances_;  ///< by face, 1/sr
+    std::vector<glm::vec3> sources_;       ///< by face: radiance that the next bounce carries
+    std::vector<glm::vec3> shown_;         ///< by face: irradiance that pixels show, W/m^2
+    size_t lit_faces_ = 0;
+};
+
+}  // namespace lucarne::gi::volume

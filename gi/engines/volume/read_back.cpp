@@ -1,0 +1,190 @@
+#include "gi/engines/volume/read_back.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "gi/shared/brdf.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+constexpr size_t kPixelsAtOnce = 4096;
+/// Along an axis, the faces of a surface are looked for so many voxels before and behind it: discs of one
+/// wall touch up to three layers.
+constexpr int kLayers = 2;
+/// Air before a point is looked for in steps of half a voxel.
+constexpr int kMostSteps = 12;
+/// Faces farther than this from the plane of the point belong to other surfaces, in voxels.
+constexpr float kOffPlane = 1.0f;
+/// Faces whose surface differs more than this (cosine) look another way.
+constexpr float kOtherWay = 0.2f;
+/// Sides that the point hardly faces are left out: squares of the normal's components below this.
+constexpr float kLeastShare = 0.02f;
+/// Faces with less weight than this in all are too few.
+constexpr float kLeastWeight = 1e-3f;
+
+/// Irradiance and weights of faces.
+struct Sum {
+    glm::vec3 light{0.0f};
+    float weights = 0;
+    void add(const glm::vec3& value, float weight) {
+        light += weight * value;
+        weights += weight;
+    }
+};
+
+class Reader {
+ public:
+    Reader(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at)
+        : space_(space), irradiance_(irradiance), at_(at), place_(space.grid().place(at.position)) {}
+
+    Sum read() {
+        Sum sum;
+        if (!find_air()) return sum;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float share = at_.normal[axis] * at_.normal[axis];
+            if (share < kLeastShare) continue;
+            const Sum seen = along(side_of(axis, at_.normal[axis]));
+            if (seen.weights > kLeastWeight) sum.add(seen.light / seen.weights, share);
+        }
+        return sum.weights > 0 ? sum : nearby();
+    }
+
+ private:
+    /// Interpolates between the four columns of voxels about the point, along the axis of a side.
+    Sum along(int side) const {
+        const int axis = axis_of(side), u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const float x = place_[u] - 0.5f, y = place_[v] - 0.5f;
+        const float low_x = std::floor(x), low_y = std::floor(y);
+        Sum sum;
+        for (int k = 0; k < 4; ++k) {
+            glm::ivec3 cell;
+            cell[axis] = static_cast<int>(std::floor(place_[axis]));
+            cell[u] = static_cast<int>(low_x) + (k & 1);
+            cell[v] = static_cast<int>(low_y) + (k >> 1);
+            const float share = (k & 1 ? x - low_x : 1 - x + low_x) * (k >> 1 ? y - low_y : 1 - y + low_y);
+            add_column(cell, side, share, sum);
+        }
+        return sum;
+    }
+
+    /// Adds the face of a column that is nearest to the plane of the point.
+    void add_column(const glm::ivec3& middle, int side, float share, Sum& sum) const {
+        float best = 0;
+        uint32_t found = Faces::kNone;
+        for (int layer = -kLayers; layer <= kLayers; ++layer) {
+            const uint32_t voxel = space_.voxels.at(middle + layer * step_of(side));
+            if (voxel == Voxels::kAir) continue;
+            const uint32_t face = space_.faces.at(voxel, side);
+            if (face == Faces::kNone) continue;
+            const float likeness = likeness_of(space_.faces.all()[face]);
+            if (likeness <= best || !is_seen(space_.faces.all()[face])) continue;
+            best = likeness;
+            found = face;
+        }
+        // A face outside the four columns' overlap still counts a little, where all others are missing.
+        if (found != Faces::kNone) sum.add(irradiance_[found], (share + 0.01f) * best);
+    }
+
+    /// Returns how well a face stands for the surface of the point, 0 to 1.
+    float likeness_of(const Face& face) const {
+        const float agreement = glm::dot(face.normal, at_.normal);
+        if (agreement <= kOtherWay) return 0;
+        const float away = std::abs(glm::dot(at_.normal, face.position - at_.position)) /
+                           (kOffPlane * space_.grid().voxel + at_.radius);
+        return std::max(1 - away, 0.0f) * agreement;
+    }
+
+    /// Returns the mean of all faces about the point that look its way and see the air before it.
+    Sum nearby() const {
+        const glm::ivec3 middle(glm::floor(place_));
+        Sum sum;
+        for (int i = 0; i < 125; ++i) {
+            const glm::ivec3 away = glm::ivec3(i % 5, i / 5 % 5, i / 25) - 2;
+            const uint32_t voxel = space_.voxels.at(middle + away);
+            if (voxel == Voxels::kAir) continue;
+            for (int side = 0; side < kSides; ++side) {
+                const uint32_t number = space_.faces.at(voxel, side);
+                if (number == Faces::kNone) continue;
+                const Face& face = space_.faces.all()[number];
+                const float agreement = glm::dot(face.normal, at_.normal);
+                if (agreement <= 0) continue;
+                if (!is_seen(face)) continue;
+                const glm::vec3 offset = (face.position - at_.position) / space_.grid().voxel;
+                sum.add(irradiance_[number], agreement / (0.1f + glm::dot(offset, offset)));
+            }
+        }
+        if (sum.weights > 0) {
+            sum.light /= sum.weights;
+            sum.weights = 1;
+        }
+        return sum;
+    }
+
+    /// Finds air before the point: on the way to the viewer, who sees it, or else along its normal. Returns
+    /// whether there is any.
+    bool find_air() {
+        for (const glm::vec3& way : {at_.viewer, at_.normal})
+            for (int step = 1; step <= kMostSteps; ++step) {
+                air_ = place_ + 0.5f * static_cast<float>(step) * way;
+                const glm::ivec3 cell(glm::floor(air_));
+                if (space_.grid().holds(cell) && space_.voxels.is_air(cell)) return true;
+            }
+        return false;
+    }
+
+    /// Returns whether a face borders on the air before the point. Rims of walls on the other side of a
+    /// corner may lie in the plane of the point.
+    bool is_seen(const Face& face) const {
+        const glm::ivec3 cell = space_.cell_before(face);
+        const glm::ivec3 away = glm::abs(cell - glm::ivec3(glm::floor(air_)));
+        // There is no wall between neighbours that are air (gi/volume/README.md).
+        if (std::max({away.x, away.y, away.z}) <= 1) return true;
+        return space_.air.sees(air_, glm::vec3(cell) + 0.5f);
+    }
+
+    const Space& space_;
+    std::span<const glm::vec3> irradiance_;
+    const SurfacePoint& at_;
+    glm::vec3 place_;      ///< of the point, in units of voxels
+    glm::vec3 air_{0.0f};  ///< in the air before it
+};
+
+}  // namespace
+
+glm::vec4 irradiance_at(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at) {
+    const glm::vec3 place = space.grid().place(at.position);
+    // Points far outside the grid would not fit into whole numbers.
+    const glm::vec3 size(space.grid().size);
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(place[axis] > -kLayers - 1 && place[axis] < size[axis] + kLayers + 1)) return glm::vec4(0.0f);
+    const Sum sum = Reader(space, irradiance, at).read();
+    return sum.weights > 0 ? glm::vec4(sum.light / sum.weights, 1) : glm::vec4(0.0f);
+}
+
+std::vector<glm::vec4> read_back(const Space& space, std::span<const glm::vec3> irradiance,
+                                 std::span<const SurfacePoint> surfaces, std::span<const Material> materials,
+                                 size_t& missing) {
+    std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
+    std::atomic<size_t> none{0};
+    parallel_ranges(surfaces.size(), kPixelsAtOnce, [&](size_t first, size_t last) {
+        size_t without = 0;
+        for (size_t i = first; i < last; ++i) {
+            const SurfacePoint& at = surfaces[i];
+            if (!(at.radius > 0)) continue;
+            const glm::vec4 found = irradiance_at(space, irradiance, at);
+            without += !(found.w > 0);
+            const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
+            light[i] = glm::vec4((r.kd + r.ks) / kPi * glm::vec3(found), 0);
+        }
+        none += without;
+    });
+    missing = none;
+    return light;
+}
+
+}  // namespace lucarne::gi::volume

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "gi/engines/volume/space.h"
+#include "gi/host_frame.h"
+
+namespace lucarne::gi::volume {
+
+/// Returns the irradiance, W/m^2, of a point of a surface from that of the faces: of those about it that look
+/// its way and are nearly in its plane, interpolated bilinearly across each axis; the axes weigh as the
+/// squares of the normal's components (McTaggart 2004, "Half-Life 2 / Valve source shading": an ambient
+/// cube). In w: 1 if faces were found, else 0.
+glm::vec4 irradiance_at(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at);
+
+/// Returns what pixels reflect of the irradiance of the faces, W/(sr m^2), row 0 on top; 0 where there is no
+/// surface. `missing` counts surfaces about which there is no face.
+std::vector<glm::vec4> read_back(const Space& space, std::span<const glm::vec3> irradiance,
+                                 std::span<const SurfacePoint> surfaces, std::span<const Material> materials,
+                                 size_t& missing);
+
+}  // namespace lucarne::gi::volume

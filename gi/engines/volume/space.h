@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "gi/volume/air.h"
+#include "gi/volume/faces.h"
+#include "gi/volume/voxels.h"
+
+namespace lucarne::gi::volume {
+
+/// The voxels of a scene, as all stages read them.
+struct Space {
+    Voxels voxels;
+    Faces faces;
+    Air air;
+
+    const Grid& grid() const { return voxels.grid(); }
+    /// The cell of air in front of a face. It may lie just outside the grid.
+    glm::ivec3 cell_before(const Face& face) const {
+        return grid().cell(voxels.occupied()[face.voxel]) + step_of(face.side);
+    }
+};
+
+}  // namespace lucarne::gi::volume

@@ -1,0 +1,158 @@
+#include "gi/engines/volume/volume.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gi/bounce_options.h"
+#include "gi/engines/volume/light_maker.h"
+#include "gi/engines/volume/options.h"
+#include "gi/engines/volume/read_back.h"
+#include "gi/gl_frame.h"
+#include "gi/host_frame.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_gbuffers.h"
+#include "gi/lighting/light_options.h"
+
+namespace lucarne::gi {
+namespace volume {
+namespace {
+
+constexpr const OptionInfo* kOptions[] = {
+    &kBounces.info,         &kOnlyBounce.info,   &kVoxelCount.info, &kSweepDirections.info,
+    &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr EngineInfo kInfo{.name = "volume",
+                           .label = "Light in a volume",
+                           .description = "light carried through voxels: quick and even, without fine detail",
+                           .options = kOptions,
+                           .needs = {.light_cut = true, .light_views = true}};
+
+class VolumeEngine final : public Engine {
+ public:
+    const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override;
+    bool reads_light_cuts() const override { return maker_.running(); }
+
+ protected:
+    void update(const Changes& changes) override {
+        scene_ = changes.scene;
+        cuts_ = changes.light_cuts;
+    }
+    Result<void> prepare(Frame& frame) override;
+    Result<void> render(Frame& frame) override;
+
+ private:
+    Result<void> make_light(Frame& frame, bool in_parts);
+    Result<void> show_light(Frame& frame);
+    Result<void> add_direct(Frame& frame, bool any_state);
+
+    Buffer materials_;
+    Sky background_;
+    GatherSky sky_;                     ///< what sweeps carry
+    SkyDirections bright_;              ///< what is too bright for them
+    std::optional<uint64_t> sky_of_;    ///< revision of the environment that both are made from
+    std::vector<LightView> views_;      ///< that light pixels
+    std::vector<LightView> far_views_;  ///< that light surfels
+    LightGBuffers light_gbuffers_;
+    LightMaker maker_;
+    VolumeLight light_;
+    SceneRevisions scene_;  ///< of the frame that is drawn
+    LightCutRevisions cuts_;
+    size_t missing_ = 0;  ///< pixels about which there is no face
+};
+
+Result<void> VolumeEngine::prepare(Frame& frame) {
+    if (frame.gl.cuts.light_views.size() < frame.lights.size() || !frame.gl.cuts.light)
+        return failed("volume", "the cuts of the light are missing");
+    LUCARNE_TRY(upload_sky(frame, background_));
+    if (sky_of_ != scene_.environment) {
+        sky_ = gather_sky(frame.environment);
+        bright_ = SkyDirections(sky_.bright);
+        sky_of_ = scene_.environment;
+    }
+    return upload_materials(frame.gl.device, frame.materials, materials_);
+}
+
+/// Brings the light at the faces up to date; in parts, as far as the time of the frame allows.
+Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
+    Basis basis{scene_, cuts_, {}, frame.index};
+    for (const LightView& view : far_views_) basis.lights.push_back(view.light);
+    if (light_.basis == basis) {
+        maker_.stop();
+        return {};
+    }
+    if (!in_parts || !maker_.goes_on(basis)) maker_.begin(std::move(basis), frame.settings);
+    LUCARNE_TRY(maker_.run(frame, {far_views_, light_gbuffers_, sky_},
+                           in_parts ? frame.light_budget : StepBudget{}, light_));
+    if (!in_parts) maker_.stop();  // what is left if the frame was given up
+    return {};
+}
+
+/// Sets the picture to what pixels reflect of the light that was made last.
+Result<void> VolumeEngine::show_light(Frame& frame) {
+    // Coordinates of an earlier scene may have another origin.
+    if (!light_.basis || light_.basis->scene.bounds != scene_.bounds) {
+        frame.gl.radiance.clear(0);
+        return {};
+    }
+    const TimedPass pass(frame, "light of the volume");
+    const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    upload_radiance(frame, read_back(*light_.space, light_.irradiance, surfaces,
+                                     device_materials(frame.materials), missing_));
+    return {};
+}
+
+/// Adds emission, background and the first reflection of the lights. `any_state`: shadows may be those of a
+/// moment ago.
+Result<void> VolumeEngine::add_direct(Frame& frame, bool any_state) {
+    const TimedPass pass(frame, "direct light");
+    Device& device = frame.gl.device;
+    LUCARNE_TRY(add_own_light(frame, materials_, background_, true));
+    for (const LightView& view : views_) {
+        LUCARNE_ASSIGN(const GBuffer* seen, any_state ? light_gbuffers_.look_at_any_state(device, view)
+                                                      : light_gbuffers_.look(device, view));
+        LUCARNE_TRY(add_light(frame, materials_, view, *seen));
+    }
+    return {};
+}
+
+Result<void> VolumeEngine::render(Frame& frame) {
+    const bool direct = wants_direct(frame.settings), in_parts = frame.moving && !frame.light_budget.whole();
+    views_ = direct ? light_views(frame, background_.directions) : std::vector<LightView>{};
+    far_views_ = wants_indirect(frame.settings) ? light_views(frame, bright_) : std::vector<LightView>{};
+    std::vector<LightView> all = views_;
+    all.insert(all.end(), far_views_.begin(), far_views_.end());
+    light_gbuffers_.begin(frame.gl.device, all, all.size());
+    missing_ = 0;
+    if (wants_indirect(frame.settings)) {
+        LUCARNE_TRY(make_light(frame, in_parts));
+        if (frame.stopped()) return {};
+        LUCARNE_TRY(show_light(frame));
+    } else {
+        frame.gl.radiance.clear(0);
+        if (in_parts) LUCARNE_TRY(light_gbuffers_.renew(frame, views_));
+    }
+    return direct ? add_direct(frame, in_parts) : Result<void>{};
+}
+
+std::vector<std::pair<std::string, double>> VolumeEngine::stats() const {
+    if (!light_.space) return {{"voxels", 0}};
+    const Grid& grid = light_.space->grid();
+    return {{"voxels", grid.cells()},
+            {"occupied_voxels", light_.space->voxels.occupied().size()},
+            {"faces", light_.space->faces.all().size()},
+            {"lit_faces", maker_.lit_faces()},
+            {"voxel_side", grid.voxel},
+            {"pixels_without_faces", missing_}};
+}
+
+}  // namespace
+}  // namespace volume
+
+EngineEntry volume_engine() {
+    return {volume::kInfo,
+            []() -> std::unique_ptr<Engine> { return std::make_unique<volume::VolumeEngine>(); }};
+}
+
+}  // namespace lucarne::gi
