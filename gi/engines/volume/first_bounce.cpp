@@ -24,6 +24,8 @@ constexpr float kOpening = 0.3f;
 constexpr float kOneDirection = 0.9f;
 /// Faces nearer than so many times their side have the form factor of a square, others that of a point.
 constexpr float kNearby = 4;
+/// How many lines of sight there are from each face.
+constexpr float kLinesOfSight = 48;
 /// What reaches less far above a plane lies in it, in voxels.
 constexpr float kInPlane = 1e-3f;
 /// Lines of sight begin and end at least this far from the sides of a voxel.
@@ -154,9 +156,10 @@ float FirstBounce::farthest(const Cluster& cluster, const glm::vec3& position, c
            std::max(low.z * along.z, high.z * along.z);
 }
 
-glm::vec3 FirstBounce::gather(uint32_t number) const {
-    const Face& face = space_.faces.all()[number];
-    glm::vec3 sum(0.0f);
+/// Sets the clusters that light a face if nothing is in between, in the order of the tree.
+void FirstBounce::look(const Face& face, std::vector<Ray>& rays) const {
+    rays.clear();
+    const float in_plane = kInPlane * space_.grid().voxel;
     for (size_t i = 0; i < clusters_.size();) {
         const Cluster& cluster = clusters_[i];
         const size_t next = i + 2 * size_t{cluster.faces} - 1;  // beyond all of its clusters
@@ -165,7 +168,6 @@ glm::vec3 FirstBounce::gather(uint32_t number) const {
         const bool one = cluster.faces == 1;
         const float length2 = glm::dot(cluster.normal, cluster.normal);
         const float spread = std::sqrt(std::max(1 - length2, 0.0f) * distance2);
-        const float in_plane = kInPlane * space_.grid().voxel;
         if (farthest(cluster, face.position, face.normal) < in_plane ||
             farthest(cluster, face.position, -cluster.normal) + spread < in_plane) {
             i = next;  // all of it is below the horizon, or faces away
@@ -183,14 +185,40 @@ glm::vec3 FirstBounce::gather(uint32_t number) const {
                      kPi / cluster.area;
         } else {
             const float above = glm::dot(way, face.normal), facing = -glm::dot(way, cluster.normal);
-            // A disc on its axis (Howell's catalogue, B-13), which is smaller than its solid angle by this
-            // much.
+            // That of a disc on its axis (Howell's catalogue, B-13), less than of a point with its area.
             const float disc = distance2 * (distance2 + cluster.area / kPi);
             if (above > 0 && facing > 0) factor = above * facing / disc;
         }
-        if (!(factor > 0)) continue;
-        if (space_.air.sees(places_[number], places_[cluster.face])) sum += factor * cluster.power;
+        if (factor > 0) rays.push_back({factor * cluster.power, cluster.face});
     }
+}
+
+/// Returns the irradiance of a face. The clusters are divided into groups of about equal light, neighbours
+/// together, and one line of sight decides for each group: where all of it is seen the sum is exact.
+glm::vec3 FirstBounce::gather(uint32_t number, std::vector<Ray>& rays) const {
+    look(space_.faces.all()[number], rays);
+    float whole = 0;
+    for (const Ray& ray : rays) whole += luminance(ray.light);
+    const float group = whole / kLinesOfSight;
+    glm::vec3 sum(0.0f), light(0.0f);
+    float gathered = 0;  // of the present group
+    uint32_t seen = Faces::kNone;
+    const auto finish = [&] {
+        if (seen != Faces::kNone && space_.air.sees(places_[number], places_[seen])) sum += light;
+        light = glm::vec3(0.0f);
+        gathered = 0;
+        seen = Faces::kNone;
+    };
+    for (const Ray& ray : rays) {
+        const float own = luminance(ray.light);
+        light += ray.light;
+        gathered += own;
+        // The cluster in the middle of the group's light.
+        if (seen == Faces::kNone && gathered >= 0.5f * group) seen = ray.face;
+        if (gathered >= group) finish();
+    }
+    if (seen == Faces::kNone && !rays.empty()) seen = rays.back().face;
+    finish();
     return sum;
 }
 
@@ -198,8 +226,9 @@ bool FirstBounce::advance() {
     const size_t all = clusters_.empty() ? 0 : irradiance_.size();
     const size_t end = std::min(all, done_ + kReceiversAtOnce);
     parallel_ranges(end - std::min(done_, end), kReceiversATask, [&](size_t first, size_t last) {
+        std::vector<Ray> rays;
         for (size_t i = done_ + first; i < done_ + last; ++i)
-            irradiance_[i] = gather(static_cast<uint32_t>(i));
+            irradiance_[i] = gather(static_cast<uint32_t>(i), rays);
     });
     done_ = end;
     return done_ < all;

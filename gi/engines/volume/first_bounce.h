@@ -42,7 +42,13 @@ class FirstBounce {
     void add_cluster(std::span<const glm::vec3> radiance, std::span<uint32_t> faces);
     size_t divide(std::span<uint32_t> faces) const;
     static float farthest(const Cluster& cluster, const glm::vec3& position, const glm::vec3& along);
-    glm::vec3 gather(uint32_t face) const;
+    /// What a cluster sends to a face if nothing is in between.
+    struct Ray {
+        glm::vec3 light;  ///< W/m^2
+        uint32_t face;    ///< to which the line of sight goes
+    };
+    void look(const Face& face, std::vector<Ray>& rays) const;
+    glm::vec3 gather(uint32_t face, std::vector<Ray>& rays) const;
 
     const Space& space_;
     std::vector<glm::vec3> places_;  ///< by face: a place in the air before it, in units of voxels

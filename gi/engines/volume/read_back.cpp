@@ -22,6 +22,8 @@ constexpr int kMostSteps = 12;
 constexpr float kOffPlane = 1.0f;
 /// Faces whose surface differs more than this (cosine) look another way.
 constexpr float kOtherWay = 0.2f;
+/// How much faces count that look another way than a point about which no others are.
+constexpr float kAnyWay = 0.02f;
 /// Sides that the point hardly faces are left out: squares of the normal's components below this.
 constexpr float kLeastShare = 0.02f;
 /// Faces with less weight than this in all are too few.
@@ -99,7 +101,7 @@ class Reader {
         return std::max(1 - away, 0.0f) * agreement;
     }
 
-    /// Returns the mean of all faces about the point that look its way and see the air before it.
+    /// Returns the mean of all faces about the point that see the air before it.
     Sum nearby() const {
         const glm::ivec3 middle(glm::floor(place_));
         Sum sum;
@@ -111,8 +113,8 @@ class Reader {
                 const uint32_t number = space_.faces.at(voxel, side);
                 if (number == Faces::kNone) continue;
                 const Face& face = space_.faces.all()[number];
-                const float agreement = glm::dot(face.normal, at_.normal);
-                if (agreement <= 0) continue;
+                // Faces that look another way count a little, for what is hidden in its voxels but for these.
+                const float agreement = std::max(glm::dot(face.normal, at_.normal), kAnyWay);
                 if (!is_seen(face)) continue;
                 const glm::vec3 offset = (face.position - at_.position) / space_.grid().voxel;
                 sum.add(irradiance_[number], agreement / (0.1f + glm::dot(offset, offset)));
