@@ -61,18 +61,30 @@ float form_factor(const glm::vec3& position, const glm::vec3& normal, const glm:
     return std::abs(sum) / (2 * kPi);
 }
 
-FirstBounce::FirstBounce(const Space& space) : space_(space) {
-    const auto faces = space.faces.all();
+namespace {
+
+/// Returns a place in the air before a face, in units of voxels, from which lines of sight go. Walls of
+/// voxels are up to two voxels thick and have steps if they are slanted, so the place is lifted off the
+/// surface as far as nothing else is there.
+glm::vec3 place_before(const Space& space, const Face& face) {
     const Grid& grid = space.grid();
-    for (uint32_t i = 0; i < faces.size(); ++i) {
-        const Face& face = faces[i];
-        const glm::ivec3 cell = space.cell_before(face);
-        const glm::vec3 low(cell);
-        glm::vec3 place = glm::clamp(grid.place(face.position), low + kInside, low + (1 - kInside));
-        const int axis = axis_of(face.side);
-        place[axis] = low[axis] + 0.5f;
-        places_.push_back(place);
+    const glm::vec3 low(space.cell_before(face)), surface = grid.place(face.position);
+    glm::vec3 close = glm::clamp(surface, low + kInside, low + (1 - kInside));
+    close[axis_of(face.side)] = low[axis_of(face.side)] + 0.5f;
+    for (const float lift : {2.0f, 1.5f, 1.0f}) {
+        const glm::vec3 place = surface + lift * face.normal;
+        const glm::ivec3 cell(glm::floor(place));
+        if (grid.holds(cell) && space.voxels.is_air(cell) && space.air.sees(close, place)) return place;
     }
+    return close;
+}
+
+}  // namespace
+
+FirstBounce::FirstBounce(const Space& space) : space_(space), places_(space.faces.all().size()) {
+    parallel_ranges(places_.size(), kReceiversATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) places_[i] = place_before(space, space.faces.all()[i]);
+    });
 }
 
 void FirstBounce::begin(std::span<const glm::vec3> radiance) {
@@ -179,6 +191,8 @@ void FirstBounce::look(const Face& face, std::vector<Ray>& rays) const {
             continue;
         }
         i = next;
+        // Surfaces in one voxel are too near to each other for its resolution.
+        if (one && space_.faces.all()[cluster.face].voxel == face.voxel) continue;
         float factor = 0;
         if (one && distance2 < kNearby * kNearby * cluster.area) {
             factor = form_factor(face.position, face.normal, cluster.middle, cluster.normal, cluster.area) *

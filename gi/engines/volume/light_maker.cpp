@@ -168,7 +168,7 @@ Result<StepResult> LightMaker::sweep_sky(Work& work) {
     }
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
-    const auto light = reflected(sweeper_->irradiance());
+    const auto light = reflected(smoothed(*space_, sweeper_->irradiance()));
     for (size_t face = 0; face < sources_.size(); ++face) sources_[face] += light[face];
     return StepResult::done;
 }
@@ -177,7 +177,7 @@ Result<StepResult> LightMaker::gather_first(Work& work) {
     // The sky's light differs in each frame, as its directions do.
     const Basis now = work.inputs.sky.texels.empty() ? without_frame(basis_) : basis_;
     if (first_of_ == now) {
-        add_bounce(1, first_bounce_->irradiance());
+        add_bounce(1, first_light_);
         return StepResult::skipped;
     }
     const TimedPass pass(work.frame, "first bounce");
@@ -185,7 +185,8 @@ Result<StepResult> LightMaker::gather_first(Work& work) {
     if (!sweeping_) first_bounce_->begin(sources_);
     sweeping_ = first_bounce_->advance();
     if (sweeping_) return StepResult::again;
-    add_bounce(1, first_bounce_->irradiance());
+    first_light_ = smoothed(*space_, first_bounce_->irradiance());
+    add_bounce(1, first_light_);
     first_of_ = now;
     return StepResult::done;
 }
@@ -196,7 +197,7 @@ Result<StepResult> LightMaker::sweep_bounce(Work& work, uint32_t bounce) {
         sweeper_->begin(directions(bounce), sources_, [](const glm::vec3&) { return glm::vec3(0.0f); });
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
-    add_bounce(bounce, sweeper_->irradiance());
+    add_bounce(bounce, smoothed(*space_, sweeper_->irradiance()));
     return StepResult::done;
 }
 

@@ -93,12 +93,13 @@ class LightMaker {
     std::optional<FirstBounce> first_bounce_;
     std::optional<Sweeper> sweeper_;
     std::optional<SpaceBasis> space_of_;
-    std::optional<Basis> own_of_, first_of_;  ///< what own_ and first_bounce_ were made from
+    std::optional<Basis> own_of_, first_of_;  ///< what own_ and first_light_ were made from
     size_t views_done_ = 0;
     bool sweeping_ = false;  ///< the present step has begun
 
     std::vector<glm::vec3> own_;           ///< by face: radiance before any bounce but of the sky, W/(sr m^2)
     std::vector<glm::vec3> reflectances_;  ///< by face, 1/sr
+    std::vector<glm::vec3> first_light_;   ///< by face: irradiance by the first bounce, W/m^2
     std::vector<glm::vec3> sources_;       ///< by face: radiance that the next bounce carries
     std::vector<glm::vec3> shown_;         ///< by face: irradiance that pixels show, W/m^2
     size_t lit_faces_ = 0;

@@ -46,7 +46,7 @@ class Reader {
 
     Sum read() {
         Sum sum;
-        if (!find_air()) return sum;
+        if (!find_air()) return nearby();
         for (int axis = 0; axis < 3; ++axis) {
             const float share = at_.normal[axis] * at_.normal[axis];
             if (share < kLeastShare) continue;
@@ -101,7 +101,8 @@ class Reader {
         return std::max(1 - away, 0.0f) * agreement;
     }
 
-    /// Returns the mean of all faces about the point that see the air before it.
+    /// Returns the mean of all faces about the point that see the air before it. Where voxels show no air at
+    /// all, between things as small as voxels, any face counts that looks the way of the point.
     Sum nearby() const {
         const glm::ivec3 middle(glm::floor(place_));
         Sum sum;
@@ -114,8 +115,9 @@ class Reader {
                 if (number == Faces::kNone) continue;
                 const Face& face = space_.faces.all()[number];
                 // Faces that look another way count a little, for what is hidden in its voxels but for these.
-                const float agreement = std::max(glm::dot(face.normal, at_.normal), kAnyWay);
-                if (!is_seen(face)) continue;
+                const float agreement =
+                    std::max(glm::dot(face.normal, at_.normal), has_air_ ? kAnyWay : 0.0f);
+                if (!(agreement > 0) || (has_air_ && !is_seen(face))) continue;
                 const glm::vec3 offset = (face.position - at_.position) / space_.grid().voxel;
                 sum.add(irradiance_[number], agreement / (0.1f + glm::dot(offset, offset)));
             }
@@ -134,7 +136,7 @@ class Reader {
             for (int step = 1; step <= kMostSteps; ++step) {
                 air_ = place_ + 0.5f * static_cast<float>(step) * way;
                 const glm::ivec3 cell(glm::floor(air_));
-                if (space_.grid().holds(cell) && space_.voxels.is_air(cell)) return true;
+                if (space_.grid().holds(cell) && space_.voxels.is_air(cell)) return has_air_ = true;
             }
         return false;
     }
@@ -154,6 +156,7 @@ class Reader {
     const SurfacePoint& at_;
     glm::vec3 place_;      ///< of the point, in units of voxels
     glm::vec3 air_{0.0f};  ///< in the air before it
+    bool has_air_ = false;
 };
 
 }  // namespace

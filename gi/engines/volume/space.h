@@ -1,6 +1,9 @@
 #pragma once
 
 #include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "gi/volume/air.h"
 #include "gi/volume/faces.h"
@@ -20,5 +23,9 @@ struct Space {
         return grid().cell(voxels.occupied()[face.voxel]) + step_of(face.side);
     }
 };
+
+/// Returns the means of values of faces over each face and those beside it that belong to the same surface:
+/// what few lines of sight or directions leave uneven becomes smooth, and an even value stays as it is.
+std::vector<glm::vec3> smoothed(const Space& space, std::span<const glm::vec3> values);
 
 }  // namespace lucarne::gi::volume
