@@ -47,6 +47,50 @@ inline std::filesystem::path shiny_scene(const BenchRun& run, int exponent) {
     return shiny;
 }
 
+/// Measures the mean radiance of a unit square of albedo .5 lit by another square that emits radiance 1,
+/// divided by .5: the form factor between them (Howell's catalogue, C-11 and C-14); in one frame and the mean
+/// of four, with the errors that they should keep.
+inline Result<void> form_factor(gi::Device& device, const BenchRun& run, const std::string& engine,
+                                const std::string& name, const glm::vec3& corner, const glm::vec3& u,
+                                const glm::vec3& v, double truth, double one, double four) {
+    gi::scenes::AnalyticScene scene;
+    const glm::vec3 x(1, 0, 0), y(0, 1, 0), o(0.0f);
+    gi::scenes::add_rectangle(scene.surfels, o, x, y, 150, glm::vec3(.5f), 0);
+    gi::scenes::add_rectangle(scene.surfels, corner, u, v, 150, glm::vec3(0.0f), 1);
+    scene.materials = {gi::scenes::material(1, 0, 1, 0), gi::scenes::material(0, 0, 1, 1)};
+    // The camera is far away and low, so that all parts of the receiver have the same weight and the emitter
+    // hides none.
+    scene.camera = gi::scenes::look(glm::vec3(40, .5f, 10), glm::vec3(.5f, .5f, 0), .02f, side(run, 256));
+    scene.settings = high(run);
+    scene.settings.set(gi::kOnlyBounce, 1);
+    double sum = 0;
+    constexpr int kFrames = 4;
+    for (int i = 0; i < kFrames; ++i) {
+        LUCARNE_ASSIGN(const auto rendered,
+                       gi::scenes::render(device, engine, scene, static_cast<uint64_t>(i)));
+        double mean = 0;
+        size_t pixels = 0;
+        for (size_t p = 0; p < rendered.texels.size(); ++p) {
+            if (!(rendered.texels[p].depth > 0) || (rendered.texels[p].material & 0xffffu) != 0) continue;
+            mean += rendered.radiance[p].y / .5;
+            ++pixels;
+        }
+        mean /= static_cast<double>(std::max<size_t>(pixels, 1));
+        if (i == 0) row("form factor, " + name + ", high", "mean", mean / truth - 1, one, true);
+        sum += mean / kFrames;
+    }
+    row("form factor, " + name + ", 4 frames", "mean", sum / truth - 1, four, true);
+    return {};
+}
+
+inline Result<void> form_factors(gi::Device& device, const BenchRun& run, const std::string& engine,
+                                 double one, double four) {
+    const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f);
+    LUCARNE_TRY(form_factor(device, run, engine, "parallel at 1", z, y, x, .199825, one, four));
+    LUCARNE_TRY(form_factor(device, run, engine, "parallel at .5", .5f * z, y, x, .415253, one, four));
+    return form_factor(device, run, engine, "at a right angle", o, y, z, .200044, one, four);
+}
+
 /// Measures a closed box of albedo .5 whose walls emit .5: one frame and the mean of four, with the errors
 /// that they should keep.
 inline Result<void> furnace(gi::Device& device, const BenchRun& run, const std::string& engine, double one,

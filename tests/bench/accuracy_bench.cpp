@@ -1,7 +1,8 @@
 // The accuracy of the `vpl` engine against analytic truth and against the reference, as a table: every row
 // with its preset, its figure and its target. This is a program and not a test: `./run accuracy` takes some
 // minutes and prints missed targets. `lucarne_accuracy [FOLDER] [ENGINE] [--scale S]`: pictures go to FOLDER
-// (default: a temporary one that is removed). ENGINE: micro or environment (gathered_accuracy.h) instead.
+// (default: a temporary one that is removed). ENGINE: micro, environment (gathered_accuracy.h) or
+// volume (volume_accuracy.h) instead.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +19,7 @@
 #include "tests/bench/bench_run.h"
 #include "tests/bench/gathered_accuracy.h"
 #include "tests/bench/scan.h"
+#include "tests/bench/volume_accuracy.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
 
@@ -37,40 +39,6 @@ double brightest(const std::vector<glm::vec4>& picture) {
     double most = 0;
     for (const glm::vec4& pixel : picture) most = std::max(most, gi::luminance(pixel));
     return most;
-}
-
-/// Measures the mean radiance of a unit square of albedo .5 lit by another square that emits radiance 1,
-/// divided by .5: the form factor between them (Howell's catalogue, C-11 and C-14).
-Result<void> form_factor(gi::Device& device, const BenchRun& run, const std::string& name,
-                         const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, double truth) {
-    gi::scenes::AnalyticScene scene;
-    const glm::vec3 x(1, 0, 0), y(0, 1, 0), o(0.0f);
-    gi::scenes::add_rectangle(scene.surfels, o, x, y, 150, glm::vec3(.5f), 0);
-    gi::scenes::add_rectangle(scene.surfels, corner, u, v, 150, glm::vec3(0.0f), 1);
-    scene.materials = {gi::scenes::material(1, 0, 1, 0), gi::scenes::material(0, 0, 1, 1)};
-    // The camera is far away and low, so that all parts of the receiver have the same weight and the emitter
-    // hides none.
-    scene.camera = gi::scenes::look(glm::vec3(40, .5f, 10), glm::vec3(.5f, .5f, 0), .02f, side(run, 256));
-    scene.settings = high(run);
-    scene.settings.set(gi::kOnlyBounce, 1);
-    double sum = 0;
-    constexpr int kFrames = 4;
-    for (int i = 0; i < kFrames; ++i) {
-        LUCARNE_ASSIGN(const auto rendered,
-                       gi::scenes::render(device, "vpl", scene, static_cast<uint64_t>(i)));
-        double mean = 0;
-        size_t pixels = 0;
-        for (size_t p = 0; p < rendered.texels.size(); ++p) {
-            if (!(rendered.texels[p].depth > 0) || (rendered.texels[p].material & 0xffffu) != 0) continue;
-            mean += rendered.radiance[p].y / .5;
-            ++pixels;
-        }
-        mean /= static_cast<double>(std::max<size_t>(pixels, 1));
-        if (i == 0) row("form factor, " + name + ", high", "mean", mean / truth - 1, .02, true);
-        sum += mean / kFrames;
-    }
-    row("form factor, " + name + ", 4 frames", "mean", sum / truth - 1, .005, true);
-    return {};
 }
 
 Result<void> judge(const std::string& what, const std::vector<glm::vec4>& picture, const Scan::Truth& truth,
@@ -243,11 +211,9 @@ Result<void> measure(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     if (run.subject == "micro") return bench::accuracy_of_micro(*device, run);
     if (run.subject == "environment") return bench::accuracy_of_environment(*device, run);
+    if (run.subject == "volume") return bench::accuracy_of_volume(*device, run);
     LUCARNE_TRY(bench::furnace(*device, run, "vpl", .02, .005));
-    const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f);
-    LUCARNE_TRY(form_factor(*device, run, "parallel at 1", z, y, x, .199825));
-    LUCARNE_TRY(form_factor(*device, run, "parallel at .5", .5f * z, y, x, .415253));
-    LUCARNE_TRY(form_factor(*device, run, "at a right angle", o, y, z, .200044));
+    LUCARNE_TRY(bench::form_factors(*device, run, "vpl", .02, .005));
     LUCARNE_TRY(cornell(run));
     LUCARNE_TRY(invariance(*device, run));
     LUCARNE_TRY(equal_time(run));
@@ -260,5 +226,6 @@ Result<void> measure(const BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {.subjects = {"micro", "environment"}});
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure,
+                                      {.subjects = {"micro", "environment", "volume"}});
 }

@@ -59,17 +59,24 @@ void LightMaker::begin(Basis basis, const EngineSettings& settings) {
     sweep_count_ = settings[kSweepDirections];
     voxel_count_ = settings[kVoxelCount];
     seed_ = settings[kSeed];
+    transport_ = settings[kTransport];
+    iterations_ = settings[kIterations];
     views_done_ = 0;
     sweeping_ = false;
     const auto step = [this](auto function) {
         return [this, function](Work& work) { return (this->*function)(work); };
     };
-    std::vector<Step<Work>> steps = {
-        {"surfels", step(&LightMaker::take_surfels)}, {"voxels", step(&LightMaker::divide)},
-        {"faces", step(&LightMaker::find_faces)},     {"surfel light", step(&LightMaker::light_surfels)},
-        {"sky", step(&LightMaker::sweep_sky)},        {"first bounce", step(&LightMaker::gather_first)}};
-    for (uint32_t bounce = 2; bounce <= last_; ++bounce)
-        steps.push_back({"sweep", [this, bounce](Work& work) { return sweep_bounce(work, bounce); }});
+    std::vector<Step<Work>> steps = {{"surfels", step(&LightMaker::take_surfels)},
+                                     {"voxels", step(&LightMaker::divide)},
+                                     {"faces", step(&LightMaker::find_faces)},
+                                     {"surfel light", step(&LightMaker::light_surfels)},
+                                     {"sky", step(&LightMaker::sweep_sky)}};
+    const bool sweeps = transport_ == Transport::sweeps;
+    if (sweeps) steps.push_back({"first bounce", step(&LightMaker::gather_first)});
+    for (uint32_t bounce = sweeps ? 2 : 1; bounce <= last_; ++bounce)
+        steps.push_back({"bounce", [this, bounce, sweeps](Work& work) {
+                             return sweeps ? sweep_bounce(work, bounce) : propagate_bounce(work, bounce);
+                         }});
     runner_.start(std::move(steps));
 }
 
@@ -96,6 +103,7 @@ Result<StepResult> LightMaker::take_surfels(Work& work) {
     first_of_.reset();
     sweeper_.reset();
     first_bounce_.reset();
+    propagation_.reset();
     LUCARNE_TRY(surfels_.set_surfels(work.frame));
     return StepResult::done;
 }
@@ -198,6 +206,20 @@ Result<StepResult> LightMaker::sweep_bounce(Work& work, uint32_t bounce) {
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
     add_bounce(bounce, smoothed(*space_, sweeper_->irradiance()));
+    return StepResult::done;
+}
+
+Result<StepResult> LightMaker::propagate_bounce(Work& work, uint32_t bounce) {
+    const TimedPass pass(work.frame, "propagation");
+    if (!propagation_) propagation_.emplace(*space_);
+    if (!sweeping_) {
+        propagation_->begin(sources_, iterations_);
+        sent_ = luminance(propagation_->under_way());
+    }
+    sweeping_ = propagation_->advance();
+    if (sweeping_) return StepResult::again;
+    under_way_ = sent_ > 0 ? luminance(propagation_->under_way()) / sent_ : 0;
+    add_bounce(bounce, propagation_->irradiance());
     return StepResult::done;
 }
 

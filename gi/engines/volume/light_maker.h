@@ -9,6 +9,8 @@
 
 #include "gi/changes.h"
 #include "gi/engines/volume/first_bounce.h"
+#include "gi/engines/volume/options.h"
+#include "gi/engines/volume/propagation.h"
 #include "gi/engines/volume/space.h"
 #include "gi/engines/volume/sweep.h"
 #include "gi/gather/gather_sky.h"
@@ -57,6 +59,8 @@ class LightMaker {
     Result<void> run(Frame& frame, const Inputs& inputs, const StepBudget& budget, VolumeLight& target);
 
     size_t lit_faces() const { return lit_faces_; }
+    /// The share of the light sent out with transport sh that had not arrived after the last iterations.
+    double under_way() const { return under_way_; }
 
  private:
     struct Work {
@@ -78,6 +82,7 @@ class LightMaker {
     Result<StepResult> sweep_sky(Work& work);
     Result<StepResult> gather_first(Work& work);
     Result<StepResult> sweep_bounce(Work& work, uint32_t bounce);
+    Result<StepResult> propagate_bounce(Work& work, uint32_t bounce);
     void add_bounce(uint32_t bounce, std::span<const glm::vec3> irradiance);
     std::vector<glm::vec3> reflected(std::span<const glm::vec3> irradiance) const;
     Directions directions(uint32_t bounce) const;
@@ -87,11 +92,14 @@ class LightMaker {
     uint32_t first_shown_ = 1, last_ = 1;  ///< the bounces that pixels show
     uint32_t sweep_count_ = 64, voxel_count_ = 64;
     uint64_t seed_ = 0;
+    Transport transport_ = Transport::sweeps;
+    uint32_t iterations_ = 64;
 
     LitSurfels surfels_;
     std::shared_ptr<Space> space_;
     std::optional<FirstBounce> first_bounce_;
     std::optional<Sweeper> sweeper_;
+    std::optional<Propagation> propagation_;
     std::optional<SpaceBasis> space_of_;
     std::optional<Basis> own_of_, first_of_;  ///< what own_ and first_light_ were made from
     size_t views_done_ = 0;
@@ -103,6 +111,8 @@ class LightMaker {
     std::vector<glm::vec3> sources_;       ///< by face: radiance that the next bounce carries
     std::vector<glm::vec3> shown_;         ///< by face: irradiance that pixels show, W/m^2
     size_t lit_faces_ = 0;
+    double sent_ = 0;  ///< luminance of the flux that faces sent out in the present bounce
+    double under_way_ = 0;
 };
 
 }  // namespace lucarne::gi::volume

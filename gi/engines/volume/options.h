@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "gi/options.h"
 
@@ -38,6 +39,35 @@ inline constexpr Option<uint32_t> kSweepDirections{{
     .values = kDirectionCounts,
     .slider = {32, 256, true},
     .defaults = {int64_t{64}, int64_t{64}, int64_t{128}},
+    .cheaper = -1,
+}};
+
+/// How light crosses the volume.
+enum class Transport : uint8_t { sweeps, sh };
+inline constexpr std::array<std::string_view, 2> kTransports = {"sweeps", "sh"};
+
+inline constexpr Option<Transport> kTransport{{
+    .kind = OptionKind::choice,
+    .key = "transport",
+    .label = "transport",
+    .help = "How light crosses the volume: along directions, or as spherical harmonics from voxel to voxel, "
+            "as in "
+            "the paper, which loses most far light",
+    .choices = kTransports,
+    .defaults = {int64_t{0}, int64_t{0}, int64_t{0}},
+    .keeps = true,
+}};
+
+inline constexpr Option<uint32_t> kIterations{{
+    .kind = OptionKind::integer,
+    .key = "iterations",
+    .label = "iterations",
+    .help = "Steps of light from voxel to voxel in each bounce, with transport sh",
+    .cost = "only with transport sh: time grows with them, and light comes farther",
+    .least = 1,
+    .most = 4096,
+    .slider = {8, 512, true},
+    .defaults = {int64_t{32}, int64_t{64}, int64_t{64}},
     .cheaper = -1,
 }};
 

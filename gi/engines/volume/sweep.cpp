@@ -95,8 +95,7 @@ void Sweeper::sweep(const glm::vec3& way, std::vector<Four>& target) const {
     struct Way {
         size_t met, left;
         float cosine, weight;
-        bool same_plane;
-        ptrdiff_t neighbour;
+        ptrdiff_t neighbour;  ///< where what arrives is read
     };
     std::array<Way, 3> ways;
     for (int i = 0; i < 3; ++i) {
@@ -104,9 +103,10 @@ void Sweeper::sweep(const glm::vec3& way, std::vector<Four>& target) const {
         const auto left = static_cast<size_t>(side_of(axis, way[axis]));
         const auto met = static_cast<size_t>(opposite(static_cast<int>(left)));
         const float cosine = std::abs(way[axis]);
-        ways[static_cast<size_t>(i)] = {met,    left,
-                                        cosine, cosine * directions_.weights[met],
-                                        i > 0,  i == 0 ? 0 : i == 1 ? back_u : back_v};
+        ways[static_cast<size_t>(i)] = {met, left, cosine, cosine * directions_.weights[met],
+                                        i == 0   ? 0
+                                        : i == 1 ? back_u
+                                                 : back_v};
     }
     const int planes = grid.size[shape.along];
     for (int k = 0; k < planes; ++k) {
@@ -126,8 +126,7 @@ void Sweeper::sweep(const glm::vec3& way, std::vector<Four>& target) const {
             for (const Way& w : ways) {
                 const uint32_t face = numbers[w.met];
                 if (face == Faces::kNone) continue;
-                const Four& arriving =
-                    (w.same_plane ? now : before)[static_cast<size_t>(order.places[i] + w.neighbour)];
+                const Four& arriving = now[static_cast<size_t>(order.places[i] + w.neighbour)];
                 target[face].v += w.weight * arriving.v;
             }
         }

@@ -19,9 +19,9 @@ namespace lucarne::gi {
 namespace volume {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,         &kOnlyBounce.info,   &kVoxelCount.info, &kSweepDirections.info,
-    &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {&kBounces.info,         &kOnlyBounce.info,   &kVoxelCount.info,
+                                          &kSweepDirections.info, &kTransport.info,    &kIterations.info,
+                                          &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "volume",
                            .label = "Light in a volume",
                            .description = "light carried through voxels: quick and even, without fine detail",
@@ -144,6 +144,7 @@ std::vector<std::pair<std::string, double>> VolumeEngine::stats() const {
             {"faces", light_.space->faces.all().size()},
             {"lit_faces", maker_.lit_faces()},
             {"voxel_side", grid.voxel},
+            {"flux_under_way", maker_.under_way()},
             {"pixels_without_faces", missing_}};
 }
 

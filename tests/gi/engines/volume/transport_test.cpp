@@ -1,0 +1,235 @@
+// Transport of light between faces: form factors first.
+#include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "gi/engines/volume/directions.h"
+#include "gi/engines/volume/first_bounce.h"
+#include "gi/engines/volume/propagation.h"
+#include "gi/engines/volume/sweep.h"
+#include "io/core/parallel.h"
+#include "tests/gi/engines/volume/volume_space.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+glm::vec3 dark(const glm::vec3&) {
+    return glm::vec3(0.0f);
+}
+
+std::vector<glm::vec3> swept(const Space& space, const std::vector<glm::vec3>& radiance, uint64_t seed = 1,
+                             const Sweeper::Outside& outside = dark) {
+    Sweeper sweeper(space);
+    sweeper.begin(even_directions(64, seed), radiance, outside);
+    while (sweeper.advance()) {
+    }
+    return sweeper.irradiance();
+}
+
+/// The mean of sweeps along several sets of directions, as of several frames.
+std::vector<glm::vec3> swept_often(const Space& space, const std::vector<glm::vec3>& radiance, int times) {
+    std::vector<glm::vec3> sum(radiance.size(), glm::vec3(0.0f));
+    for (int i = 0; i < times; ++i) {
+        const auto light = swept(space, radiance, static_cast<uint64_t>(i + 1));
+        for (size_t face = 0; face < sum.size(); ++face) sum[face] += light[face] / static_cast<float>(times);
+    }
+    return sum;
+}
+
+std::vector<glm::vec3> gathered(const Space& space, const std::vector<glm::vec3>& radiance) {
+    FirstBounce bounce(space);
+    bounce.begin(radiance);
+    while (bounce.advance()) {
+    }
+    return {bounce.irradiance().begin(), bounce.irradiance().end()};
+}
+
+// Howell's catalogue C-11 and C-14, unit squares.
+constexpr double kOpposite = 0.199825, kBeside = 0.200044;
+
+TEST(VolumeTransport, FacesOfACubeSeeEachOtherByTheirFormFactors) {
+    const Space space = make_space(unit_cube());
+    const auto radiance = radiance_of(space, wall(4));  // the floor
+    for (const auto& [name, light] : {std::pair("swept", swept_often(space, radiance, 8)),
+                                      std::pair("gathered", gathered(space, radiance))}) {
+        SCOPED_TRACE(name);
+        EXPECT_NEAR(mean_share(space, light, wall(5)) / kOpposite, 1, .02);
+        for (const int side : {0, 1, 2, 3})
+            EXPECT_NEAR(mean_share(space, light, wall(side)) / kBeside, 1, .05) << side;
+        double sum = 0;
+        for (int side = 0; side < kSides; ++side) sum += mean_share(space, light, wall(side));
+        EXPECT_NEAR(sum, 1, .02) << "all that leaves the floor arrives";
+    }
+    // One set of 64 directions.
+    EXPECT_NEAR(mean_share(space, swept(space, radiance), wall(5)) / kOpposite, 1, .06);
+}
+
+/// The form factor between two equal squares with parallel sides of length 1 at this distance (Howell's
+/// catalogue, C-11).
+double between_squares(double distance) {
+    const double x = 1 / distance, a = std::sqrt(1 + x * x);
+    return 2 / (M_PI * x * x) *
+           (std::log(std::sqrt(std::pow(1 + x * x, 2) / (1 + 2 * x * x))) + 2 * x * a * std::atan(x / a) -
+            2 * x * std::atan(x));
+}
+
+TEST(VolumeTransport, PlatesFarApartSeeEachOtherByTheirFormFactor) {
+    EXPECT_NEAR(between_squares(1), kOpposite, 1e-5);
+    // Diffusion brings less than a tenth of this over 16 voxels.
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, kO, kX, kY, 60, glm::vec3(.5f));
+    scenes::add_rectangle(surfels, 4.0f * kZ, kY, kX, 60, glm::vec3(.5f));
+    const Space space = make_space(flat::of(surfels), 64);  // 61 voxels from plate to plate
+    const auto inside = [](int side) {
+        return [side](const Face& face) {
+            return face.side == side && (side == 4 ? face.position.z < 1 : face.position.z > 3);
+        };
+    };
+    const auto radiance = radiance_of(space, inside(4));
+    EXPECT_NEAR(mean_share(space, gathered(space, radiance), inside(5)) / between_squares(4), 1, .02);
+}
+
+TEST(VolumeTransport, PlatesSixteenVoxelsApartSeeEachOtherByTheirFormFactor) {
+    // Diffusion brings half of this. In sweeps the voxels at the edges of the plates, which are half empty,
+    // shine like whole ones: the plate is larger by 1/29 along each side.
+    const float distance = 16.0f / 29;
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, kO, kX, kY, 60, glm::vec3(.5f));
+    scenes::add_rectangle(surfels, distance * kZ, kY, kX, 60, glm::vec3(.5f));
+    const Space space = make_space(flat::of(surfels));
+    const auto inside = [&](int side) {
+        return [side, distance](const Face& face) {
+            return face.side == side && (face.position.z < .5f * distance) == (side == 4);
+        };
+    };
+    const auto radiance = radiance_of(space, inside(4));
+    const double truth = between_squares(distance);
+    EXPECT_NEAR(mean_share(space, gathered(space, radiance), inside(5)) / truth, 1, .03);
+    EXPECT_NEAR(mean_share(space, swept_often(space, radiance, 8), inside(5)) / truth / (30 * 30 / 29. / 29.),
+                1, .02);
+}
+
+TEST(VolumeTransport, EvenLightStaysEven) {
+    const Space space = make_space(unit_cube());
+    const auto all = radiance_of(space, [](const Face&) { return true; });
+    const auto light = swept(space, all);
+    for (size_t i = 0; i < light.size(); ++i) {
+        if (!looks_inside(space.faces.all()[i])) continue;
+        EXPECT_NEAR(light[i].x / kPi, 1, 1e-3);
+    }
+    EXPECT_NEAR(mean_share(space, gathered(space, all), looks_inside), 1, .02);
+    // The open sky on a plate, on either side.
+    const Space plate = make_space(flat::square(60, 1));
+    const auto sky = swept(plate, radiance_of(plate, [](const Face&) { return false; }), 1,
+                           [](const glm::vec3&) { return glm::vec3(1.0f); });
+    for (const glm::vec3& irradiance : sky) EXPECT_NEAR(irradiance.x / kPi, 1, 1e-3);
+}
+
+TEST(VolumeTransport, NothingEntersASealedRoom) {
+    const auto room = flat::noisy_room(20000);
+    const Space space = make_space(room);
+    const auto inner = [](const Face& face) {
+        return glm::dot(face.normal, glm::vec3(.5f) - face.position) > 0 &&
+               glm::length(glm::max(glm::abs(face.position - .5f) - .52f, 0.0f)) == 0;
+    };
+    const auto outer = radiance_of(space, [&](const Face& face) { return !inner(face); });
+    const auto light = swept(space, outer, 1, [](const glm::vec3&) { return glm::vec3(1e6f); });
+    const auto first = gathered(space, outer);
+    size_t inside = 0;
+    for (size_t i = 0; i < light.size(); ++i) {
+        // A face that looks inward and sees the middle of the room is inside.
+        const Face& face = space.faces.all()[i];
+        if (!inner(face) ||
+            !space.air.sees(glm::vec3(space.cell_before(face)) + .5f, space.grid().place(glm::vec3(.5f))))
+            continue;
+        ++inside;
+        EXPECT_EQ(light[i], glm::vec3(0)) << i;
+        EXPECT_EQ(first[i], glm::vec3(0)) << i;
+    }
+    EXPECT_GT(inside, 2000u);
+}
+
+TEST(VolumeTransport, IsTheSameForAnyNumberOfThreads) {
+    const Space space = make_space(unit_cube());
+    const auto radiance = radiance_of(space, wall(0));
+    const auto light = swept(space, radiance), first = gathered(space, radiance);
+    const ThreadLimit limit(1);
+    EXPECT_EQ(light, swept(space, radiance));
+    EXPECT_EQ(first, gathered(space, radiance));
+}
+
+TEST(VolumeTransport, SmoothingKeepsEvenValuesAndWholeEnergies) {
+    const Space space = make_space(unit_cube());
+    const auto even = smoothed(space, std::vector<glm::vec3>(space.faces.all().size(), glm::vec3(3)));
+    for (const glm::vec3& value : even) EXPECT_NEAR(value.x, 3, 1e-5);
+    const auto floor = smoothed(space, radiance_of(space, wall(4)));
+    EXPECT_NEAR(mean_share(space, floor, wall(4)) * kPi, 1, 1e-5);
+    for (const int side : {0, 1, 2, 3, 5}) EXPECT_EQ(mean_share(space, floor, wall(side)), 0) << side;
+}
+
+TEST(Propagation, LosesNoLightInTheAir) {
+    // Two surfels far apart, which make a grid of 32^3 voxels.
+    std::vector<FlatSurfel> surfels = {flat::of(Surfel{kO, kZ, glm::vec3(.5f), .001f, 1e-6f, 0}),
+                                       flat::of(Surfel{glm::vec3(1), kZ, glm::vec3(.5f), .001f, 1e-6f, 0})};
+    const Space space = make_space(surfels, 32);
+    Propagation propagation(space);
+    const std::vector<glm::vec3> dark(space.faces.all().size(), glm::vec3(0.0f));
+    propagation.begin(dark, 12);
+    propagation.inject(space.grid().size / 2, glm::normalize(glm::vec3(1, 2, 3)), glm::vec3(1, 2, 3));
+    EXPECT_NEAR(propagation.under_way().y, 2, 1e-5);
+    while (propagation.advance()) {
+    }
+    EXPECT_NEAR(propagation.under_way().x, 1, 1e-4);
+    EXPECT_NEAR(propagation.under_way().z, 3, 3e-4);
+}
+
+TEST(Propagation, BringsAllLightOfAClosedRoomToItsWallsButLittleOfItFar) {
+    const Space space = make_space(unit_cube());
+    Propagation propagation(space);
+    const auto arrived = [&](const std::vector<glm::vec3>& radiance, uint32_t iterations) {
+        propagation.begin(radiance, iterations);
+        while (propagation.advance()) {
+        }
+        return propagation.irradiance();
+    };
+    const auto even = arrived(radiance_of(space, looks_inside), 512);
+    EXPECT_NEAR(mean_share(space, even, looks_inside), 1, .03);
+    // The paper's iterations: diffusion brings a thousandth of the floor's light to the ceiling, not a fifth.
+    const auto floor = arrived(radiance_of(space, wall(4)), 64);
+    EXPECT_GT(mean_share(space, floor, wall(5)), 0);
+    EXPECT_LT(mean_share(space, floor, wall(5)), .02);
+}
+
+TEST(FormFactor, OfSquaresIsThatOfTheCatalogue) {
+    // A unit square, 1 above a small surface under a corner of it (Howell's catalogue B-4, four quarters).
+    const auto corner = [](double a, double b) {
+        const double x = std::sqrt(1 + a * a), y = std::sqrt(1 + b * b);
+        return (a / x * std::atan(b / x) + b / y * std::atan(a / y)) / (2 * M_PI);
+    };
+    EXPECT_NEAR(form_factor(kO, kZ, kZ, -kZ, 1), 4 * corner(.5, .5), 1e-6);
+    EXPECT_NEAR(form_factor(kO, kZ, glm::vec3(.5f, .5f, 1), -kZ, 1), corner(1, 1), 1e-6);
+    EXPECT_EQ(form_factor(kO, kZ, kZ, kZ, 1), 0) << "from behind";
+    EXPECT_EQ(form_factor(kO, -kZ, kZ, -kZ, 1), 0) << "below the horizon";
+    // A wall that stands on the plane of the surface and ends on it, half of which is below the horizon.
+    const float standing = form_factor(kO, kZ, kX, -kX, 1);
+    EXPECT_GT(standing, 0);
+    EXPECT_LT(standing, form_factor(kO, kZ, glm::vec3(1, 0, .5f), -kX, 1));
+}
+
+TEST(Directions, AreEvenAndTurnWithTheSeed) {
+    for (const uint32_t count : {32u, 64u, 256u}) {
+        const Directions a = even_directions(count, 1), b = even_directions(count, 2);
+        ASSERT_EQ(a.ways.size(), count);
+        EXPECT_NE(a.ways[0], b.ways[0]);
+        glm::vec3 sum(0.0f);
+        for (const glm::vec3& way : a.ways) sum += way;
+        EXPECT_LT(glm::length(sum), .02f * static_cast<float>(count));
+        for (int side = 0; side < kSides; ++side)
+            EXPECT_NEAR(a.weights[static_cast<size_t>(side)] * static_cast<float>(count) / (4 * kPi), 1, .05);
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::gi::volume

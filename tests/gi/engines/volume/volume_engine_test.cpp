@@ -1,0 +1,118 @@
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "gi/engines/volume/options.h"
+#include "gi/engines/volume/volume.h"
+#include "gi/shared/brdf.h"
+#include "tests/gi/engines/lit_scene.h"
+#include "tests/gi/engines/surfel_scenes.h"
+
+namespace lucarne::gi {
+namespace {
+
+class VolumeEngineTest : public testing::Test {
+ protected:
+    static void SetUpTestSuite() {
+        auto made = Device::headless();
+        ASSERT_TRUE(made) << made.error().line();
+        device_ = std::move(*made);
+    }
+    static void TearDownTestSuite() { device_.reset(); }
+
+    static LitOptions options() {
+        LitOptions options;
+        options.lights = {make_spot({1, 1, 1.8f}, {1, 1, 0}, .6f, 5)};
+        options.settings.set(volume::kVoxelCount, 32);
+        options.settings.set(kBounces, 3);
+        return options;
+    }
+    static CameraView camera() { return look({.3f, .4f, .5f}, {1.2f, 1.3f, .9f}, 32, 32); }
+
+    static std::unique_ptr<Device> device_;
+};
+std::unique_ptr<Device> VolumeEngineTest::device_;
+
+TEST_F(VolumeEngineTest, LightMadeInPartsIsThatMadeAtOnce) {
+    const SurfelCloud room(scenes::closed_box(2, 60, glm::vec3(.6f)));
+    const auto whole = light_up(*device_, *volume_engine().make(), room, camera(), options());
+    const auto engine = volume_engine().make();
+    LitOptions moving = options();
+    moving.moving = true;
+    moving.light_budget = StepBudget::timed(0);
+    // The first picture shows direct light alone.
+    Lit lit = light_up(*device_, *engine, room, camera(), moving);
+    EXPECT_NE(lit.radiance, whole.radiance);
+    EXPECT_TRUE(engine->reads_light_cuts());
+    int frames = 1;
+    for (; engine->reads_light_cuts() && frames < 100; ++frames)
+        lit = light_up(*device_, *engine, room, camera(), moving);
+    EXPECT_GT(frames, 5);
+    EXPECT_EQ(lit.radiance, whole.radiance);
+}
+
+TEST_F(VolumeEngineTest, LightThatIsChangedAndChangedBackIsTheSame) {
+    const SurfelCloud room(scenes::closed_box(2, 60, glm::vec3(.6f)));
+    const auto engine = volume_engine().make();
+    const auto first = light_up(*device_, *engine, room, camera(), options());
+    LitOptions other = options();
+    other.lights[0].strength.x *= 2;
+    EXPECT_NE(light_up(*device_, *engine, room, camera(), other).radiance, first.radiance);
+    other = options();
+    other.materials = {make_material(.5f)};
+    EXPECT_NE(light_up(*device_, *engine, room, camera(), other).radiance, first.radiance);
+    other = options();
+    other.settings.set(volume::kVoxelCount, 16);
+    EXPECT_NE(light_up(*device_, *engine, room, camera(), other).radiance, first.radiance);
+    EXPECT_EQ(light_up(*device_, *engine, room, camera(), options()).radiance, first.radiance);
+}
+
+TEST_F(VolumeEngineTest, LightThatAStoppedFrameBeganIsNotKept) {
+    const SurfelCloud room(scenes::closed_box(2, 60, glm::vec3(.6f)));
+    const auto engine = volume_engine().make();
+    const auto first = light_up(*device_, *engine, room, camera(), options());
+    const std::atomic<bool> stop{true};
+    LitOptions other = options();
+    other.lights[0].strength.x *= 2;
+    other.stop = &stop;
+    light_up(*device_, *engine, room, camera(), other);
+    EXPECT_FALSE(engine->reads_light_cuts());
+    EXPECT_EQ(light_up(*device_, *engine, room, camera(), options()).radiance, first.radiance);
+}
+
+TEST_F(VolumeEngineTest, BouncesLitByAnEvenSkyAreThoseOfAnOpenFurnace) {
+    // A pit without a lid: what the sky lights and what it reflects adds up to no more than the sky.
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, kO, 2.0f * kX, 2.0f * kY, 80, glm::vec3(.5f));
+    const SurfelCloud plate(surfels);
+    LitOptions open = options();
+    open.lights.clear();
+    auto sky = std::make_shared<Environment>();
+    sky->texels = {glm::vec3(1.0f)};
+    open.environment = sky;
+    open.settings.set(kOnlyBounce, 1);
+    const CameraView above = look({1, 1, 3}, {1, 1, 0}, 32, 32, .4f);
+    for (const glm::vec4& pixel : light_up(*device_, *volume_engine().make(), plate, above, open).radiance)
+        EXPECT_EQ(pixel.x, 0) << "a plate does not light itself";
+    scenes::add_rectangle(surfels, kO, 2.0f * kY, 2.0f * kZ, 80, glm::vec3(.5f));  // a wall beside it
+    const SurfelCloud corner(surfels);
+    const Lit lit = light_up(*device_, *volume_engine().make(), corner, above, open);
+    // The wall receives pi / 2 of the sky above the floor and as much below; what it reflects reaches the
+    // floor by their form factor, .2 of the unit squares.
+    double mean = 0;
+    for (const glm::vec4& pixel : lit.radiance) mean += pixel.x / static_cast<double>(lit.radiance.size());
+    EXPECT_GT(mean, .02);
+    EXPECT_LT(mean, .5 * .5 * .5);
+}
+
+TEST_F(VolumeEngineTest, SurfelsWithoutNormalsAreLitDirectlyAndNothingFails) {
+    auto surfels = scenes::closed_box(2, 30, glm::vec3(.6f));
+    for (Surfel& s : surfels) s.normal = glm::vec3(0.0f);
+    const SurfelCloud cloud(surfels);
+    const auto lit = light_up(*device_, *volume_engine().make(), cloud, camera(), options());
+    for (const glm::vec4& pixel : lit.radiance) EXPECT_TRUE(std::isfinite(pixel.x));
+}
+
+}  // namespace
+}  // namespace lucarne::gi
