@@ -6,6 +6,7 @@
 #include "gi/engines/micro/micro.h"
 #include "gi/engines/reference/reference.h"
 #include "gi/engines/unlit/unlit.h"
+#include "gi/engines/volume/volume.h"
 #include "gi/engines/vpl/vpl.h"
 #include "gi/registry.h"
 #include "tests/added_engine/mean/mean.h"
@@ -15,9 +16,9 @@
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array all = {direct_engine(),      vpl_engine(),       micro_engine(),
-                                   environment_engine(), reference_engine(), unlit_engine(),
-                                   paint_engine(),       opencl_engine(),    mean_engine()};
+    static const std::array all = {direct_engine(),      vpl_engine(),       volume_engine(), micro_engine(),
+                                   environment_engine(), reference_engine(), unlit_engine(),  paint_engine(),
+                                   opencl_engine(),      mean_engine()};
     return all;
 }
 

@@ -168,6 +168,21 @@ float FirstBounce::farthest(const Cluster& cluster, const glm::vec3& position, c
            std::max(low.z * along.z, high.z * along.z);
 }
 
+/// Returns the irradiance, W/m^2, of a surface with the unit `normal` by a square with the unit normal
+/// `square_normal`, for each W/sr that it would send out along its normal. `way`: from the surface to the
+/// middle of the square, m. The kernel is expanded to second order about the middle: its mean over a square
+/// is its value plus area / 24 times its Laplacian in the plane of the square.
+float factor_of_small(const glm::vec3& normal, const glm::vec3& way, const glm::vec3& square_normal,
+                      float area) {
+    const float above = glm::dot(way, normal), facing = -glm::dot(way, square_normal);
+    if (!(above > 0 && facing > 0)) return 0;
+    const float distance2 = glm::dot(way, way);
+    const glm::vec3 along = way + facing * square_normal;  // in the plane of the square
+    const float laplacian = (16 * glm::dot(along, along) - 8 * facing * facing) / (distance2 * distance2) -
+                            8 * glm::dot(normal, along) / (distance2 * above);
+    return above * facing / (distance2 * distance2) * std::clamp(1 + area / 24 * laplacian, 0.0f, 2.0f);
+}
+
 /// Sets the clusters that light a face if nothing is in between, in the order of the tree.
 void FirstBounce::look(const Face& face, std::vector<Ray>& rays) const {
     rays.clear();
@@ -198,10 +213,7 @@ void FirstBounce::look(const Face& face, std::vector<Ray>& rays) const {
             factor = form_factor(face.position, face.normal, cluster.middle, cluster.normal, cluster.area) *
                      kPi / cluster.area;
         } else {
-            const float above = glm::dot(way, face.normal), facing = -glm::dot(way, cluster.normal);
-            // That of a disc on its axis (Howell's catalogue, B-13), less than of a point with its area.
-            const float disc = distance2 * (distance2 + cluster.area / kPi);
-            if (above > 0 && facing > 0) factor = above * facing / disc;
+            factor = factor_of_small(face.normal, way, cluster.normal / std::sqrt(length2), cluster.area);
         }
         if (factor > 0) rays.push_back({factor * cluster.power, cluster.face});
     }
