@@ -11,7 +11,7 @@
 namespace lucarne::gi::volume {
 namespace {
 
-constexpr size_t kVoxelsATask = 512, kFacesATask = 1024;
+constexpr size_t kVoxelsATask = 512, kFacesATask = 1024, kSurfelsATask = 65536;
 /// Discs of one wall touch up to this many layers of voxels below the one that borders on air.
 constexpr int kLayersBelow = 2;
 constexpr uint32_t kNoFace = Faces::kNone;
@@ -96,7 +96,9 @@ Owners find_owners(const Voxels& voxels, const Faces& faces) {
 /// Finds what faces show.
 class Finder {
  public:
-    Finder(const Voxels& voxels, std::span<const FlatSurfel> surfels) : voxels_(voxels), surfels_(surfels) {}
+    /// `normals`: of the surfels, decoded.
+    Finder(const Voxels& voxels, std::span<const FlatSurfel> surfels, std::span<const glm::vec3> normals)
+        : voxels_(voxels), surfels_(surfels), normals_(normals) {}
 
     /// Sets what a face shows; `owned`: the voxels that it stands for.
     void set_face(Face& face, std::span<const Owned> owned, std::vector<Faces::Shown>& shown) {
@@ -131,7 +133,7 @@ class Finder {
         for (const auto& [voxel, beside] : owned) {
             const glm::ivec3 cell = voxels_.grid().cell(voxels_.occupied()[voxel]);
             for (const SurfelPart& part : voxels_.parts(voxel)) {
-                const glm::vec3 normal = decode_octahedral(surfels_[part.surfel].normal);
+                const glm::vec3& normal = normals_[part.surfel];
                 const int axis = largest_axis(normal);
                 if (axis != axis_of(side)) continue;
                 add(part, cell, normal, side_of(axis, normal[axis]) != side, 1);
@@ -144,7 +146,7 @@ class Finder {
     void collect_slanted(uint32_t voxel, int side, const glm::vec3& outward) {
         const glm::ivec3 cell = voxels_.grid().cell(voxels_.occupied()[voxel]);
         for (const SurfelPart& part : voxels_.parts(voxel)) {
-            const glm::vec3 normal = decode_octahedral(surfels_[part.surfel].normal);
+            const glm::vec3& normal = normals_[part.surfel];
             const float cosine = normal[axis_of(side)] * outward[axis_of(side)];
             if (std::abs(cosine) > kSteepest) add(part, cell, normal, cosine < 0, std::abs(cosine));
         }
@@ -179,6 +181,9 @@ class Finder {
         }
         if (!(all > 0)) return;
         const float voxel = voxels_.grid().voxel;
+        const float thickness = std::clamp(radii / all, kThinnest * voxel, kThickest * voxel);
+        const auto [lowest, highest] = std::ranges::minmax(candidates_, {}, &Candidate::height);
+        if (highest.height - lowest.height <= thickness) return;  // one sheet
         // Of equal heights the order of the surfels decides.
         std::ranges::stable_sort(candidates_, std::greater<>(), &Candidate::height);
         const float hiding = std::min(kHiding * voxel * voxel, 0.5f * all);
@@ -188,13 +193,13 @@ class Finder {
             top = c.height;
             if (covered >= hiding) break;
         }
-        const float thickness = std::clamp(radii / all, kThinnest * voxel, kThickest * voxel);
         for (Candidate& c : candidates_)
             c.area *= std::clamp(3 - 2 * (top - c.height) / thickness, 0.0f, 1.0f);
     }
 
     const Voxels& voxels_;
     std::span<const FlatSurfel> surfels_;
+    std::span<const glm::vec3> normals_;
     std::vector<Candidate> candidates_;
 };
 
@@ -224,6 +229,10 @@ Faces Faces::find(const Voxels& voxels, std::span<const FlatSurfel> surfels) {
     Faces faces;
     faces.number(voxels);
     const Owners owners = find_owners(voxels, faces);
+    std::vector<glm::vec3> normals(surfels.size());
+    parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) normals[i] = decode_octahedral(surfels[i].normal);
+    });
     const size_t count = faces.faces_.size();
     struct Piece {
         std::vector<Shown> shown;
@@ -231,7 +240,7 @@ Faces Faces::find(const Voxels& voxels, std::span<const FlatSurfel> surfels) {
     };
     std::vector<Piece> pieces((count + kFacesATask - 1) / kFacesATask);
     parallel_ranges(count, kFacesATask, [&](size_t first, size_t last) {
-        Finder finder(voxels, surfels);
+        Finder finder(voxels, surfels, normals);
         Piece& piece = pieces[first / kFacesATask];
         for (size_t i = first; i < last; ++i) {
             const size_t begin = owners.starts[i], end = owners.starts[i + 1];
