@@ -56,6 +56,7 @@ void LightMaker::begin(Basis basis, const EngineSettings& settings) {
     const int32_t only = settings[kOnlyBounce];
     last_ = only >= 0 ? static_cast<uint32_t>(only) : settings[kBounces];
     first_shown_ = only >= 0 ? last_ : 1;
+    shows_sky_ = wants_direct(settings);
     sweep_count_ = settings[kSweepDirections];
     voxel_count_ = settings[kVoxelCount];
     seed_ = settings[kSeed];
@@ -72,7 +73,7 @@ void LightMaker::begin(Basis basis, const EngineSettings& settings) {
                                      {"surfel light", step(&LightMaker::light_surfels)},
                                      {"sky", step(&LightMaker::sweep_sky)}};
     const bool sweeps = transport_ == Transport::sweeps;
-    if (sweeps) steps.push_back({"first bounce", step(&LightMaker::gather_first)});
+    if (sweeps && last_ > 0) steps.push_back({"first bounce", step(&LightMaker::gather_first)});
     for (uint32_t bounce = sweeps ? 2 : 1; bounce <= last_; ++bounce)
         steps.push_back({"bounce", [this, bounce, sweeps](Work& work) {
                              return sweeps ? sweep_bounce(work, bounce) : propagate_bounce(work, bounce);
@@ -131,6 +132,7 @@ Result<StepResult> LightMaker::find_faces(Work& work) {
 Result<StepResult> LightMaker::light_surfels(Work& work) {
     if (own_of_ == without_frame(basis_)) {
         sources_ = own_;
+        shown_.assign(own_.size(), glm::vec3(0.0f));
         return StepResult::skipped;
     }
     const TimedPass pass(work.frame, "surfel light");
@@ -157,13 +159,14 @@ void LightMaker::light_faces() {
     lit_faces_ = static_cast<size_t>(
         std::ranges::count_if(own_, [](const glm::vec3& light) { return luminance(light) > 0; }));
     sources_ = own_;
+    shown_.assign(own_.size(), glm::vec3(0.0f));
 }
 
 Directions LightMaker::directions(uint32_t bounce) const {
     return even_directions(sweep_count_, mix64(mix64(seed_, basis_.frame), bounce));
 }
 
-/// Adds the first reflection of the sky to the sources.
+/// Adds the first reflection of the sky to the sources; pixels show it as direct light.
 Result<StepResult> LightMaker::sweep_sky(Work& work) {
     const GatherSky& sky = work.inputs.sky;
     if (sky.texels.empty()) return StepResult::skipped;
@@ -176,7 +179,9 @@ Result<StepResult> LightMaker::sweep_sky(Work& work) {
     }
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
-    const auto light = reflected(smoothed(*space_, sweeper_->irradiance()));
+    const auto irradiance = smoothed(*space_, sweeper_->irradiance());
+    if (shows_sky_) shown_ = irradiance;
+    const auto light = reflected(irradiance);
     for (size_t face = 0; face < sources_.size(); ++face) sources_[face] += light[face];
     return StepResult::done;
 }
@@ -226,7 +231,6 @@ Result<StepResult> LightMaker::propagate_bounce(Work& work, uint32_t bounce) {
 /// Takes over what a bounce brought to the faces: pixels show it if they should, and the next bounce carries
 /// what is reflected.
 void LightMaker::add_bounce(uint32_t bounce, std::span<const glm::vec3> irradiance) {
-    if (bounce == 1) shown_.assign(irradiance.size(), glm::vec3(0.0f));
     if (bounce >= first_shown_)
         for (size_t face = 0; face < irradiance.size(); ++face) shown_[face] += irradiance[face];
     sources_ = reflected(irradiance);

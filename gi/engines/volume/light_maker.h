@@ -89,7 +89,8 @@ class LightMaker {
 
     StepRunner<Work> runner_;
     Basis basis_;
-    uint32_t first_shown_ = 1, last_ = 1;  ///< the bounces that pixels show
+    uint32_t first_shown_ = 1, last_ = 1;  ///< the bounces that pixels show; none if the last one is 0
+    bool shows_sky_ = true;                ///< pixels show the sky's direct light
     uint32_t sweep_count_ = 64, voxel_count_ = 64;
     uint64_t seed_ = 0;
     Transport transport_ = Transport::sweeps;

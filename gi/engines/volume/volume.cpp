@@ -49,11 +49,10 @@ class VolumeEngine final : public Engine {
 
     Buffer materials_;
     Sky background_;
-    GatherSky sky_;                     ///< what sweeps carry
-    SkyDirections bright_;              ///< what is too bright for them
-    std::optional<uint64_t> sky_of_;    ///< revision of the environment that both are made from
-    std::vector<LightView> views_;      ///< that light pixels
-    std::vector<LightView> far_views_;  ///< that light surfels
+    GatherSky sky_;                   ///< what sweeps carry
+    SkyDirections bright_;            ///< what is too bright for them
+    std::optional<uint64_t> sky_of_;  ///< revision of the environment that both are made from
+    std::vector<LightView> views_;    ///< of the lights and of what is bright in the sky
     LightGBuffers light_gbuffers_;
     LightMaker maker_;
     VolumeLight light_;
@@ -77,13 +76,13 @@ Result<void> VolumeEngine::prepare(Frame& frame) {
 /// Brings the light at the faces up to date; in parts, as far as the time of the frame allows.
 Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
     Basis basis{scene_, cuts_, {}, frame.index};
-    for (const LightView& view : far_views_) basis.lights.push_back(view.light);
+    for (const LightView& view : views_) basis.lights.push_back(view.light);
     if (light_.basis == basis) {
         maker_.stop();
         return {};
     }
     if (!in_parts || !maker_.goes_on(basis)) maker_.begin(std::move(basis), frame.settings);
-    LUCARNE_TRY(maker_.run(frame, {far_views_, light_gbuffers_, sky_},
+    LUCARNE_TRY(maker_.run(frame, {views_, light_gbuffers_, sky_},
                            in_parts ? frame.light_budget : StepBudget{}, light_));
     if (!in_parts) maker_.stop();  // what is left if the frame was given up
     return {};
@@ -119,13 +118,10 @@ Result<void> VolumeEngine::add_direct(Frame& frame, bool any_state) {
 
 Result<void> VolumeEngine::render(Frame& frame) {
     const bool direct = wants_direct(frame.settings), in_parts = frame.moving && !frame.light_budget.whole();
-    views_ = direct ? light_views(frame, background_.directions) : std::vector<LightView>{};
-    far_views_ = wants_indirect(frame.settings) ? light_views(frame, bright_) : std::vector<LightView>{};
-    std::vector<LightView> all = views_;
-    all.insert(all.end(), far_views_.begin(), far_views_.end());
-    light_gbuffers_.begin(frame.gl.device, all, all.size());
+    views_ = light_views(frame, bright_);
+    light_gbuffers_.begin(frame.gl.device, views_, views_.size());
     missing_ = 0;
-    if (wants_indirect(frame.settings)) {
+    if (wants_indirect(frame.settings) || (direct && !sky_.texels.empty())) {
         LUCARNE_TRY(make_light(frame, in_parts));
         if (frame.stopped()) return {};
         LUCARNE_TRY(show_light(frame));

@@ -91,8 +91,11 @@ TEST_F(VolumeEngineTest, BouncesLitByAnEvenSkyAreThoseOfAnOpenFurnace) {
     auto sky = std::make_shared<Environment>();
     sky->texels = {glm::vec3(1.0f)};
     open.environment = sky;
-    open.settings.set(kOnlyBounce, 1);
     const CameraView above = look({1, 1, 3}, {1, 1, 0}, 32, 32, .4f);
+    open.settings.set(kOnlyBounce, 0);
+    for (const glm::vec4& pixel : light_up(*device_, *volume_engine().make(), plate, above, open).radiance)
+        EXPECT_NEAR(pixel.x, .5f, .01f) << "albedo times the sky";
+    open.settings.set(kOnlyBounce, 1);
     for (const glm::vec4& pixel : light_up(*device_, *volume_engine().make(), plate, above, open).radiance)
         EXPECT_EQ(pixel.x, 0) << "a plate does not light itself";
     scenes::add_rectangle(surfels, kO, 2.0f * kY, 2.0f * kZ, 80, glm::vec3(.5f));  // a wall beside it
