@@ -19,6 +19,8 @@
 namespace lucarne::gi::volume {
 namespace {
 
+/// Voxels of transport sh: their lobes take 128 bytes each.
+constexpr size_t kMostLobes = size_t{1} << 19;
 /// Texels of the sky that one direction stands for.
 constexpr int kSkySamples = 32;
 
@@ -216,6 +218,9 @@ Result<StepResult> LightMaker::sweep_bounce(Work& work, uint32_t bounce) {
 
 Result<StepResult> LightMaker::propagate_bounce(Work& work, uint32_t bounce) {
     const TimedPass pass(work.frame, "propagation");
+    if (space_->grid().cells() > kMostLobes)
+        return failed("volume", "so many voxels take too much memory with --transport sh",
+                      "choose fewer (--voxels 64)");
     if (!propagation_) propagation_.emplace(*space_);
     if (!sweeping_) {
         propagation_->begin(sources_, iterations_);

@@ -109,6 +109,35 @@ TEST_F(VolumeEngineTest, BouncesLitByAnEvenSkyAreThoseOfAnOpenFurnace) {
     EXPECT_LT(mean, .5 * .5 * .5);
 }
 
+TEST_F(VolumeEngineTest, TooManyVoxelsForHarmonicsAreAnError) {
+    const SurfelCloud room(scenes::closed_box(2, 20, glm::vec3(.6f)));
+    auto loaded = load_cloud(*device_, room);
+    ASSERT_TRUE(loaded);
+    LitOptions wide = options();
+    wide.settings.set(volume::kVoxelCount, 128);
+    wide.settings.set(volume::kTransport, volume::Transport::sh);
+    const CameraView view = camera();
+    GBuffer gbuffer;
+    ASSERT_TRUE(rasterize(*device_, (*loaded)->cut, view, gbuffer));
+    auto radiance = device_->buffer(size_t{view.width} * view.height * sizeof(glm::vec4), "radiance");
+    ASSERT_TRUE(radiance);
+    PassTimes times(*device_);
+    const auto engine = volume_engine().make();
+    GlFrame on_device{*device_, (*loaded)->pool, needed_cuts(engine->info(), (*loaded)->cut, 1), gbuffer,
+                      *radiance};
+    Frame frame{.camera = view,
+                .lights = wide.lights,
+                .settings = wide.settings,
+                .bounds = {glm::vec3(0), glm::vec3(2)},
+                .gl = on_device,
+                .times = times};
+    const auto drawn = engine->draw(frame);
+    ASSERT_FALSE(drawn);
+    EXPECT_NE(drawn.error().line().find("--voxels 64"), std::string::npos) << drawn.error().line();
+    frame.settings.set(volume::kVoxelCount, 32);
+    EXPECT_TRUE(engine->draw(frame)) << "the error is not kept";
+}
+
 TEST_F(VolumeEngineTest, SurfelsWithoutNormalsAreLitDirectlyAndNothingFails) {
     auto surfels = scenes::closed_box(2, 30, glm::vec3(.6f));
     for (Surfel& s : surfels) s.normal = glm::vec3(0.0f);
