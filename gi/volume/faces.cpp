@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -11,7 +12,8 @@
 namespace lucarne::gi::volume {
 namespace {
 
-constexpr size_t kVoxelsATask = 512, kFacesATask = 1024, kSurfelsATask = 65536;
+constexpr size_t kVoxelsATask = 512, kFacesATask = 1024, kFacesAtOnce = 8 * kFacesATask;
+constexpr size_t kSurfelsATask = 65536;
 /// Discs of one wall touch up to this many layers of voxels below the one that borders on air.
 constexpr int kLayersBelow = 2;
 constexpr uint32_t kNoFace = Faces::kNone;
@@ -225,38 +227,68 @@ void Faces::number(const Voxels& voxels) {
     }
 }
 
-Faces Faces::find(const Voxels& voxels, std::span<const FlatSurfel> surfels) {
-    Faces faces;
-    faces.number(voxels);
-    const Owners owners = find_owners(voxels, faces);
-    std::vector<glm::vec3> normals(surfels.size());
-    parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) normals[i] = decode_octahedral(surfels[i].normal);
-    });
-    const size_t count = faces.faces_.size();
+struct FaceMaker::State {
     struct Piece {
-        std::vector<Shown> shown;
+        std::vector<Faces::Shown> shown;
         std::vector<size_t> ends;  ///< by face
     };
-    std::vector<Piece> pieces((count + kFacesATask - 1) / kFacesATask);
-    parallel_ranges(count, kFacesATask, [&](size_t first, size_t last) {
-        Finder finder(voxels, surfels, normals);
-        Piece& piece = pieces[first / kFacesATask];
-        for (size_t i = first; i < last; ++i) {
-            const size_t begin = owners.starts[i], end = owners.starts[i + 1];
-            finder.set_face(faces.faces_[i], std::span(owners.voxels).subspan(begin, end - begin),
+    const Voxels& voxels;
+    std::span<const FlatSurfel> surfels;
+    Faces faces;
+    Owners owners;
+    std::vector<glm::vec3> normals;  ///< of the surfels, decoded
+    std::vector<Piece> pieces;       ///< of so many faces each
+    size_t done = 0;                 ///< faces
+};
+
+FaceMaker::FaceMaker(const Voxels& voxels, std::span<const FlatSurfel> surfels)
+    : state_(new State{voxels, surfels, {}, {}, {}, {}}) {
+    State& s = *state_;
+    s.faces.number(voxels);
+    s.owners = find_owners(voxels, s.faces);
+    s.normals.resize(surfels.size());
+    parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) s.normals[i] = decode_octahedral(surfels[i].normal);
+    });
+    s.pieces.resize((s.faces.faces_.size() + kFacesATask - 1) / kFacesATask);
+}
+
+FaceMaker::~FaceMaker() = default;
+
+bool FaceMaker::advance() {
+    State& s = *state_;
+    const size_t count = s.faces.faces_.size(), end = std::min(count, s.done + kFacesAtOnce);
+    parallel_ranges(end - s.done, kFacesATask, [&](size_t first, size_t last) {
+        Finder finder(s.voxels, s.surfels, s.normals);
+        State::Piece& piece = s.pieces[(s.done + first) / kFacesATask];
+        for (size_t i = s.done + first; i < s.done + last; ++i) {
+            const size_t begin = s.owners.starts[i], after = s.owners.starts[i + 1];
+            finder.set_face(s.faces.faces_[i], std::span(s.owners.voxels).subspan(begin, after - begin),
                             piece.shown);
             piece.ends.push_back(piece.shown.size());
         }
     });
+    s.done = end;
+    return s.done < count;
+}
+
+Faces FaceMaker::finish() {
+    Faces& faces = state_->faces;
     faces.starts_.push_back(0);
-    for (Piece& piece : pieces) {
+    for (State::Piece& piece : state_->pieces) {
         const size_t before = faces.shown_.size();
         for (const size_t end : piece.ends) faces.starts_.push_back(before + end);
         faces.shown_.insert(faces.shown_.end(), piece.shown.begin(), piece.shown.end());
         piece = {};
     }
-    return faces;
+    return std::move(faces);
+}
+
+Faces Faces::find(const Voxels& voxels, std::span<const FlatSurfel> surfels) {
+    FaceMaker maker(voxels, surfels);
+    while (maker.advance()) {
+    }
+    return maker.finish();
 }
 
 }  // namespace lucarne::gi::volume

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,7 @@ class Faces {
     }
 
  private:
+    friend class FaceMaker;
     void number(const Voxels& voxels);
     template <class Body>
     void parallel_over_faces(const Body& body) const {
@@ -74,6 +76,22 @@ class Faces {
     std::vector<std::array<uint32_t, kSides>> numbers_;  ///< by occupied voxel
     std::vector<size_t> starts_;  ///< by face: the first part that it shows; and the end
     std::vector<Shown> shown_;
+};
+
+/// Faces::find() in steps.
+class FaceMaker {
+ public:
+    /// `voxels` and `surfels` must outlive this.
+    FaceMaker(const Voxels& voxels, std::span<const FlatSurfel> surfels);
+    ~FaceMaker();
+    /// Finds what the next faces show. Returns false when all are done.
+    bool advance();
+    /// Returns the faces; all must be done.
+    Faces finish();
+
+ private:
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 }  // namespace lucarne::gi::volume

@@ -16,35 +16,12 @@
 namespace lucarne::gi::volume {
 namespace {
 
-constexpr size_t kSurfelsAPiece = 16384, kVoxelsAPiece = 1024;
+constexpr size_t kSurfelsAPiece = 16384, kSurfelsAtOnce = 8 * kSurfelsAPiece;
 /// How many parts there may be, of 12 bytes each while they are made: some, and so many a surfel. A disc of a
 /// scan touches two voxels on the average.
 constexpr size_t kSomeParts = size_t{1} << 22, kPartsASurfel = 8;
 /// Of a disc, in voxels: those of a broken file would touch every voxel of the grid, one after the other.
 constexpr float kLargestRadius = 1024;
-
-struct CellPart {
-    uint32_t cell;
-    SurfelPart part;
-};
-
-/// Adds the parts of a surfel.
-void divide_surfel(const Grid& grid, std::span<const FlatSurfel> surfels, uint32_t number,
-                   std::vector<CellPart>& target) {
-    const FlatSurfel& surfel = surfels[number];
-    const float radius = std::min(surfel.radius, kLargestRadius * grid.voxel);
-    const size_t first = target.size();
-    float sum = 0;
-    for_each_voxel(grid, {surfel.x, surfel.y, surfel.z}, decode_octahedral(surfel.normal), radius,
-                   [&](const glm::ivec3& cell, float area) {
-                       sum += area;
-                       target.push_back({grid.number(cell), {number, area}});
-                   });
-    const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
-    for (size_t i = first; i < target.size(); ++i)
-        target[i].part.area =
-            sum > 0 ? target[i].part.area / sum * whole : whole / static_cast<float>(target.size() - first);
-}
 
 }  // namespace
 
@@ -74,32 +51,58 @@ Grid grid_about(std::span<const FlatSurfel> surfels, uint32_t longest) {
     return low.x <= high.x ? grid_about(low, high, longest) : Grid{};
 }
 
-Result<Voxels> Voxels::divide(std::span<const FlatSurfel> surfels, const Grid& grid) {
-    Voxels voxels;
-    voxels.grid_ = grid;
-    voxels.numbers_.assign(grid.cells(), kAir);
-    const size_t pieces = (surfels.size() + kSurfelsAPiece - 1) / kSurfelsAPiece;
-    std::vector<std::vector<CellPart>> made(pieces);
-    const size_t most = kSomeParts + kPartsASurfel * surfels.size();
-    std::atomic<size_t> parts{0};
-    parallel_ranges(surfels.size(), kSurfelsAPiece, [&](size_t first, size_t last) {
-        auto& own = made[first / kSurfelsAPiece];
+VoxelMaker::VoxelMaker(std::span<const FlatSurfel> surfels, const Grid& grid)
+    : surfels_(surfels),
+      grid_(grid),
+      pieces_((surfels.size() + kSurfelsAPiece - 1) / kSurfelsAPiece),
+      most_(kSomeParts + kPartsASurfel * surfels.size()) {}
+
+void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) const {
+    const FlatSurfel& surfel = surfels_[number];
+    const float radius = std::min(surfel.radius, kLargestRadius * grid_.voxel);
+    const size_t first = target.size();
+    float sum = 0;
+    for_each_voxel(grid_, {surfel.x, surfel.y, surfel.z}, decode_octahedral(surfel.normal), radius,
+                   [&](const glm::ivec3& cell, float area) {
+                       sum += area;
+                       target.push_back({grid_.number(cell), {number, area}});
+                   });
+    const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
+    for (size_t i = first; i < target.size(); ++i)
+        target[i].part.area =
+            sum > 0 ? target[i].part.area / sum * whole : whole / static_cast<float>(target.size() - first);
+}
+
+Result<bool> VoxelMaker::advance() {
+    const size_t end = std::min(surfels_.size(), done_ + kSurfelsAtOnce);
+    parallel_ranges(end - done_, kSurfelsAPiece, [&](size_t first, size_t last) {
+        auto& own = pieces_[(done_ + first) / kSurfelsAPiece];
         own.reserve(2 * (last - first));
         size_t counted = 0;
-        for (size_t i = first; i < last && parts.load(std::memory_order_relaxed) <= most; ++i) {
-            if (!has_disc(surfels[i])) continue;
-            divide_surfel(grid, surfels, static_cast<uint32_t>(i), own);
-            if (own.size() - counted < kSurfelsAPiece && i + 1 < last) continue;
-            parts += own.size() - counted;
+        for (size_t i = done_ + first; i < done_ + last && parts_.load(std::memory_order_relaxed) <= most_;
+             ++i) {
+            if (!has_disc(surfels_[i])) continue;
+            add_parts(static_cast<uint32_t>(i), own);
+            if (own.size() - counted < kSurfelsAPiece) continue;
+            parts_ += own.size() - counted;
             counted = own.size();
         }
+        parts_ += own.size() - counted;
     });
-    if (parts > most)
-        return failed("volume", fmt::format("the surfels' discs touch voxels more than {} times", most),
+    done_ = end;
+    if (parts_ > most_)
+        return failed("volume", fmt::format("the surfels' discs touch voxels more than {} times", most_),
                       "choose fewer voxels (--voxels) or more points");
+    return done_ < surfels_.size();
+}
+
+Voxels VoxelMaker::finish() {
+    Voxels voxels;
+    voxels.grid_ = grid_;
+    voxels.numbers_.assign(grid_.cells(), Voxels::kAir);
     // Surfels of a voxel stay in their order, because pieces and their parts are taken in theirs.
-    std::vector<uint32_t> counts(grid.cells(), 0);
-    for (const auto& piece : made)
+    std::vector<uint32_t> counts(grid_.cells(), 0);
+    for (const auto& piece : pieces_)
         for (const CellPart& part : piece) ++counts[part.cell];
     voxels.starts_.push_back(0);
     for (uint32_t cell = 0; cell < counts.size(); ++cell) {
@@ -110,11 +113,19 @@ Result<Voxels> Voxels::divide(std::span<const FlatSurfel> surfels, const Grid& g
     }
     voxels.parts_.resize(voxels.starts_.back());
     std::vector<size_t> next(voxels.starts_.begin(), voxels.starts_.end() - 1);
-    for (auto& piece : made) {
+    for (auto& piece : pieces_) {
         for (const CellPart& part : piece) voxels.parts_[next[voxels.numbers_[part.cell]]++] = part.part;
         piece = {};
     }
     return voxels;
+}
+
+Result<Voxels> Voxels::divide(std::span<const FlatSurfel> surfels, const Grid& grid) {
+    VoxelMaker maker(surfels, grid);
+    for (bool more = true; more;) {
+        LUCARNE_ASSIGN(more, maker.advance());
+    }
+    return maker.finish();
 }
 
 }  // namespace lucarne::gi::volume

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -43,11 +44,38 @@ class Voxels {
     size_t all_parts() const { return parts_.size(); }
 
  private:
+    friend class VoxelMaker;
     Grid grid_;
     std::vector<uint32_t> numbers_;   ///< by cell
     std::vector<uint32_t> occupied_;  ///< cells
     std::vector<size_t> starts_;      ///< by occupied voxel: its first part; and the end
     std::vector<SurfelPart> parts_;
+};
+
+/// Voxels::divide() in steps.
+class VoxelMaker {
+ public:
+    /// `surfels` must outlive this.
+    VoxelMaker(std::span<const FlatSurfel> surfels, const Grid& grid);
+    /// Divides the next surfels, some hundred thousand. Returns false when all are done. Errors: discs that
+    /// together touch too many voxels.
+    Result<bool> advance();
+    /// Returns the voxels; all surfels must be done.
+    Voxels finish();
+
+ private:
+    struct CellPart {
+        uint32_t cell;
+        SurfelPart part;
+    };
+    void add_parts(uint32_t surfel, std::vector<CellPart>& target) const;
+
+    std::span<const FlatSurfel> surfels_;
+    Grid grid_;
+    std::vector<std::vector<CellPart>> pieces_;  ///< of so many surfels each
+    size_t most_;                                ///< parts
+    std::atomic<size_t> parts_{0};
+    size_t done_ = 0;  ///< surfels
 };
 
 /// Returns whether a surfel occupies voxels.

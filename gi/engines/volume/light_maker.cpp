@@ -107,6 +107,8 @@ Result<StepResult> LightMaker::take_surfels(Work& work) {
     sweeper_.reset();
     first_bounce_.reset();
     propagation_.reset();
+    voxel_maker_.reset();
+    face_maker_.reset();
     LUCARNE_TRY(surfels_.set_surfels(work.frame));
     return StepResult::done;
 }
@@ -114,16 +116,25 @@ Result<StepResult> LightMaker::take_surfels(Work& work) {
 Result<StepResult> LightMaker::divide(Work& work) {
     if (space_of_) return StepResult::skipped;
     const TimedPass pass(work.frame, "voxels");
+    if (!voxel_maker_) {
+        const auto surfels = surfels_.surfels();
+        voxel_maker_.emplace(surfels, grid_about(surfels, voxel_count_));
+    }
+    LUCARNE_ASSIGN(const bool more, voxel_maker_->advance());
+    if (more) return StepResult::again;
     space_ = std::make_shared<Space>();
-    const auto surfels = surfels_.surfels();
-    LUCARNE_ASSIGN(space_->voxels, Voxels::divide(surfels, grid_about(surfels, voxel_count_)));
+    space_->voxels = voxel_maker_->finish();
+    voxel_maker_.reset();
     return StepResult::done;
 }
 
 Result<StepResult> LightMaker::find_faces(Work& work) {
     if (space_of_) return StepResult::skipped;
     const TimedPass pass(work.frame, "faces");
-    space_->faces = Faces::find(space_->voxels, surfels_.surfels());
+    if (!face_maker_) face_maker_.emplace(space_->voxels, surfels_.surfels());
+    if (face_maker_->advance()) return StepResult::again;
+    space_->faces = face_maker_->finish();
+    face_maker_.reset();
     space_->air = Air(space_->voxels);
     sweeper_.emplace(*space_);
     first_bounce_.emplace(*space_);

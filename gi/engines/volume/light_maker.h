@@ -98,6 +98,8 @@ class LightMaker {
 
     LitSurfels surfels_;
     std::shared_ptr<Space> space_;
+    std::optional<VoxelMaker> voxel_maker_;  ///< of the space that is being made
+    std::optional<FaceMaker> face_maker_;
     std::optional<FirstBounce> first_bounce_;
     std::optional<Sweeper> sweeper_;
     std::optional<Propagation> propagation_;
