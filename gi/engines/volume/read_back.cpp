@@ -1,6 +1,7 @@
 #include "gi/engines/volume/read_back.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -16,6 +17,10 @@ constexpr size_t kPixelsAtOnce = 4096;
 /// Along an axis, the faces of a surface are looked for so many voxels before and behind it: discs of one
 /// wall touch up to three layers.
 constexpr int kLayers = 2;
+constexpr std::array<int, 5> kLayerOrder = {0, 1, -1, 2, -2};  // the nearest first
+static_assert(kLayerOrder.size() == 2 * kLayers + 1);
+/// A face that stands for a point as well as this needs no comparison with others of its column.
+constexpr float kLikeEnough = 0.6f;
 /// Air before a point is looked for in steps of half a voxel.
 constexpr int kMostSteps = 12;
 /// Faces farther than this from the plane of the point belong to other surfaces, in voxels.
@@ -78,7 +83,7 @@ class Reader {
     void add_column(const glm::ivec3& middle, int side, float share, Sum& sum) const {
         float best = 0;
         uint32_t found = Faces::kNone;
-        for (int layer = -kLayers; layer <= kLayers; ++layer) {
+        for (const int layer : kLayerOrder) {
             const uint32_t voxel = space_.voxels.at(middle + layer * step_of(side));
             if (voxel == Voxels::kAir) continue;
             const uint32_t face = space_.faces.at(voxel, side);
@@ -87,6 +92,7 @@ class Reader {
             if (likeness <= best || !is_seen(space_.faces.all()[face])) continue;
             best = likeness;
             found = face;
+            if (best > kLikeEnough) break;
         }
         // A face outside the four columns' overlap still counts a little, where all others are missing.
         if (found != Faces::kNone) sum.add(irradiance_[found], (share + 0.01f) * best);
@@ -101,30 +107,38 @@ class Reader {
         return std::max(1 - away, 0.0f) * agreement;
     }
 
-    /// Returns the mean of all faces about the point that see the air before it. Where voxels show no air at
-    /// all, between things as small as voxels, any face counts that looks the way of the point.
+    /// Returns the mean of faces about the point that see the air before it: of those next to it that look
+    /// its way, else of all within two voxels. Where voxels show no air at all, between things as small as
+    /// voxels, faces count that look its way.
     Sum nearby() const {
+        Sum sum = within(1, 0);
+        if (!(sum.weights > 0)) sum = within(2, has_air_ ? kAnyWay : 0);
+        if (sum.weights > 0) {
+            sum.light /= sum.weights;
+            sum.weights = 1;
+        }
+        return sum;
+    }
+    /// Adds up faces so many voxels away or less; those that look another way count `other_way`.
+    Sum within(int reach, float other_way) const {
         const glm::ivec3 middle(glm::floor(place_));
+        const int side_length = 2 * reach + 1;
         Sum sum;
-        for (int i = 0; i < 125; ++i) {
-            const glm::ivec3 away = glm::ivec3(i % 5, i / 5 % 5, i / 25) - 2;
+        for (int i = 0; i < side_length * side_length * side_length; ++i) {
+            const glm::ivec3 away =
+                glm::ivec3(i % side_length, i / side_length % side_length, i / (side_length * side_length)) -
+                reach;
             const uint32_t voxel = space_.voxels.at(middle + away);
             if (voxel == Voxels::kAir) continue;
             for (int side = 0; side < kSides; ++side) {
                 const uint32_t number = space_.faces.at(voxel, side);
                 if (number == Faces::kNone) continue;
                 const Face& face = space_.faces.all()[number];
-                // Faces that look another way count a little, for what is hidden in its voxels but for these.
-                const float agreement =
-                    std::max(glm::dot(face.normal, at_.normal), has_air_ ? kAnyWay : 0.0f);
+                const float agreement = std::max(glm::dot(face.normal, at_.normal), other_way);
                 if (!(agreement > 0) || (has_air_ && !is_seen(face))) continue;
                 const glm::vec3 offset = (face.position - at_.position) / space_.grid().voxel;
                 sum.add(irradiance_[number], agreement / (0.1f + glm::dot(offset, offset)));
             }
-        }
-        if (sum.weights > 0) {
-            sum.light /= sum.weights;
-            sum.weights = 1;
         }
         return sum;
     }
