@@ -12,14 +12,6 @@
 namespace lucarne::gi::tracing {
 namespace {
 
-bool has_disc(const Surfel& s) {
-    const auto finite = [](const glm::vec3& v) {
-        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-    };
-    return s.radius > 0 && std::isfinite(s.radius) && finite(s.position) && finite(s.normal) &&
-           glm::dot(s.normal, s.normal) > 0.5f;
-}
-
 RTCRay make_ray(const glm::vec3& origin, const glm::vec3& direction, float length) {
     RTCRay ray{};
     ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
@@ -31,6 +23,14 @@ RTCRay make_ray(const glm::vec3& origin, const glm::vec3& direction, float lengt
 }
 
 }  // namespace
+
+bool has_disc(const Surfel& s) {
+    const auto finite = [](const glm::vec3& v) {
+        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    };
+    return s.radius > 0 && std::isfinite(s.radius) && finite(s.position) && finite(s.normal) &&
+           glm::dot(s.normal, s.normal) > 0.5f;
+}
 
 struct SurfelTracer::Embree {
     RTCDevice device = nullptr;
