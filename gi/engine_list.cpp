@@ -4,6 +4,7 @@
 #include "gi/engines/direct/direct.h"
 #include "gi/engines/environment/environment.h"
 #include "gi/engines/micro/micro.h"
+#include "gi/engines/paths/paths.h"
 #include "gi/engines/reference/reference.h"
 #include "gi/engines/unlit/unlit.h"
 #include "gi/engines/volume/volume.h"
@@ -13,8 +14,8 @@
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array all = {direct_engine(),      vpl_engine(),       volume_engine(), micro_engine(),
-                                   environment_engine(), reference_engine(), unlit_engine()};
+    static const std::array all = {direct_engine(),      vpl_engine(),   volume_engine(),    micro_engine(),
+                                   environment_engine(), paths_engine(), reference_engine(), unlit_engine()};
     return all;
 }
 

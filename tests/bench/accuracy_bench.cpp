@@ -18,6 +18,7 @@
 #include "tests/bench/accuracy.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/gathered_accuracy.h"
+#include "tests/bench/paths_accuracy.h"
 #include "tests/bench/scan.h"
 #include "tests/bench/volume_accuracy.h"
 #include "tests/gi/engines/analytic_frame.h"
@@ -212,6 +213,7 @@ Result<void> measure(const BenchRun& run) {
     if (run.subject == "micro") return bench::accuracy_of_micro(*device, run);
     if (run.subject == "environment") return bench::accuracy_of_environment(*device, run);
     if (run.subject == "volume") return bench::accuracy_of_volume(*device, run);
+    if (run.subject == "paths") return bench::accuracy_of_paths(*device, run);
     LUCARNE_TRY(bench::furnace(*device, run, "vpl", .02, .005));
     LUCARNE_TRY(bench::form_factors(*device, run, "vpl", .02, .005));
     LUCARNE_TRY(cornell(run));
@@ -227,5 +229,5 @@ Result<void> measure(const BenchRun& run) {
 
 int main(int argc, char** argv) {
     return lucarne::bench::bench_main(argc, argv, lucarne::measure,
-                                      {.subjects = {"micro", "environment", "volume"}});
+                                      {.subjects = {"micro", "environment", "volume", "paths"}});
 }

@@ -15,6 +15,7 @@
 #include "gi/registry.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"
+#include "tests/gi/engines/bake_whole.h"
 #include "tests/gi/engines/even_order.h"
 #include "tests/gi/engines/needed_cuts.h"
 #include "tests/gi/engines/test_settings.h"
@@ -87,6 +88,9 @@ struct AnalyticScene {
     std::shared_ptr<const Environment> environment = nullptr;
     /// Number of materials of the scene for which the surfels were packed, if it had more.
     size_t packed_materials = 0;
+    /// What the engine has computed in advance, for pictures of the same surfels (Rendered::bake); null: it
+    /// computes it.
+    std::shared_ptr<const Bake> bake = nullptr;
 };
 
 /// Returns the camera of a square picture at `eye` that looks at `target`; `tangent` is that of half the
@@ -122,6 +126,7 @@ struct Rendered {
     std::vector<glm::vec4> radiance;
     std::vector<GBufferTexel> texels;
     std::vector<std::pair<std::string, double>> stats;
+    std::shared_ptr<const Bake> bake;
 };
 
 /// Renders a scene with an engine as the viewer would: every cut is the whole scene.
@@ -153,6 +158,11 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
     const FrameCuts cuts = needed_cuts(engine->info(), cut, scene.lights.size());
     const std::vector<Material> materials =
         scene.materials.empty() ? std::vector{material(1, 0, 1, 0)} : scene.materials;
+    const Bounds bounds{glm::vec3(source.header().min), glm::vec3(source.header().max)};
+    auto bake = scene.bake;
+    if (!bake) {
+        LUCARNE_ASSIGN(bake, bake_whole(engine->info(), pool.download(cut), bounds, scene.settings));
+    }
     GlFrame on_device{device, pool, cuts, gbuffer, radiance};
     Frame frame{.camera = scene.camera,
                 .lights = scene.lights,
@@ -160,12 +170,13 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
                 .settings = scene.settings,
                 .index = index,
                 .environment = scene.environment,
-                .bounds = {glm::vec3(source.header().min), glm::vec3(source.header().max)},
+                .bounds = bounds,
+                .bake = bake.get(),
                 .gl = on_device,
                 .times = times};
     LUCARNE_TRY(engine->draw(frame));
     return Rendered{radiance.download_all<glm::vec4>(pixels),
-                    gbuffer.texels.download_all<GBufferTexel>(pixels), engine->stats()};
+                    gbuffer.texels.download_all<GBufferTexel>(pixels), engine->stats(), std::move(bake)};
 }
 
 /// Returns the point that a texel shows.

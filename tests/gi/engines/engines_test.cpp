@@ -9,6 +9,7 @@
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
 #include "gi/engines/environment/options.h"
+#include "gi/engines/paths/options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/volume/options.h"
 #include "gi/engines/vpl/options.h"
@@ -40,6 +41,15 @@ void fine_caches(EngineSettings& settings) {
     fine_buffers(settings);
     settings.set(environment::kCacheSpacing, 3);
 }
+void many_rays(EngineSettings& settings) {
+    settings.set(paths::kPointSpacing, 60);
+    settings.set(paths::kGatherRays, 512);
+    settings.set(paths::kEntryPoints, 100'000);
+}
+void more_rays(EngineSettings& settings) {
+    settings.set(paths::kPointSpacing, 30);
+    settings.set(paths::kGatherRays, 2048);
+}
 void many_paths(EngineSettings& settings) {
     settings.set(reference::kSamples, 256);
 }
@@ -52,13 +62,15 @@ struct Claims {
     bool emission_bounces;  ///< light of emitting surfaces, reflected any number of times
     // Largest relative errors of the picture's mean, and of the furnace's radiance.
     double bounce = 0, furnace = 0, far_transport = 0, of_reference = 0;
-    void (*fine)(EngineSettings&) = no_settings;  ///< the settings for these
+    void (*fine)(EngineSettings&) = no_settings;   ///< the settings for these
+    void (*finer)(EngineSettings&) = no_settings;  ///< on top of them, for light from small far surfaces
 };
 constexpr Claims kClaims[] = {{"direct", false, false},
                               {"vpl", true, true, .03, .015, .04, .03, fine_vpls},
                               {"volume", true, true, .05, .015, .02, .05, fine_voxels},
                               {"micro", true, true, .03, .015, .04, .03, fine_buffers},
                               {"environment", true, true, .03, .015, .04, .03, fine_caches},
+                              {"paths", true, true, .03, .005, .04, .03, many_rays, more_rays},
                               {"reference", true, true, .03, .003, .03, .01, many_paths}};
 
 class Engines : public testing::TestWithParam<Claims> {
@@ -152,7 +164,9 @@ TEST_P(Engines, SealedDarkRoomStaysBlack) {
         scene.settings.set(kBounces, 3);
         float brightest = 0;
         size_t lit = 0;
-        for (const glm::vec4& pixel : render(scene).radiance) {
+        const auto rendered = render(scene);
+        scene.bake = rendered.bake;
+        for (const glm::vec4& pixel : rendered.radiance) {
             brightest = std::max({brightest, pixel.x, pixel.y, pixel.z});
             if (pixel.x > 0 || pixel.y > 0 || pixel.z > 0) ++lit;
         }
@@ -225,7 +239,9 @@ TEST_P(Engines, BouncesOneByOneAddUp) {
     scene.camera = look(glm::vec3(1.2f, 0.5f, 1.2f), glm::vec3(0, 0.5f, 0.2f), 0.6f, 48);
     const auto mean = [&](int32_t only) {
         scene.settings.set(kOnlyBounce, only);
-        return mean_luminance(render(scene).radiance);
+        const auto rendered = render(scene);
+        scene.bake = rendered.bake;
+        return mean_luminance(rendered.radiance);
     };
     const double both = mean(-1), first = mean(0), second = mean(1);
     EXPECT_GT(first, 0);
@@ -241,8 +257,9 @@ TEST_P(Engines, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {
     GetParam().fine(scene.settings);
     for (const uint32_t bounces : {0u, 1u, 2u, 3u}) {
         scene.settings.set(kBounces, bounces);
-        EXPECT_NEAR(mean_luminance(render(scene).radiance), 1 - std::pow(0.5, bounces + 1),
-                    GetParam().furnace)
+        const auto rendered = render(scene);
+        scene.bake = rendered.bake;
+        EXPECT_NEAR(mean_luminance(rendered.radiance), 1 - std::pow(0.5, bounces + 1), GetParam().furnace)
             << bounces;
     }
 }
@@ -294,6 +311,7 @@ TEST_P(Engines, LightCrossesTheRoomBetweenFarPlatesByTheirFormFactor) {
         scene.camera = look(glm::vec3(.5f, .5f, .9f * distance), glm::vec3(.5f, .5f, 0), .4f / distance, 32);
         scene.settings.set(kOnlyBounce, 1);
         GetParam().fine(scene.settings);
+        GetParam().finer(scene.settings);
         SCOPED_TRACE(distance);
         expect_reflected_emission(scene, render(scene), kZ, GetParam().far_transport);
     }

@@ -8,6 +8,7 @@
 
 #include "gi/engine.h"
 #include "gi/gl_frame.h"
+#include "tests/gi/engines/bake_whole.h"
 #include "tests/gi/engines/needed_cuts.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/test_settings.h"
@@ -82,6 +83,10 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
     radiance->clear(0x7fc00000u);  // NaN: the engine has to write every pixel
     PassTimes times(device);
     const FrameCuts cuts = needed_cuts(engine.info(), cut, options.lights.size());
+    const Bounds bounds =
+        options.bounds.value_or(Bounds{glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)});
+    const auto bake = bake_whole(engine.info(), (*loaded)->pool.download(cut), bounds, options.settings);
+    EXPECT_TRUE(bake) << bake.error().line();
     GlFrame on_device{device, (*loaded)->pool, cuts, gbuffer, *radiance};
     Frame frame{.camera = camera,
                 .lights = options.lights,
@@ -90,10 +95,10 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 .settings = options.settings,
                 .index = options.index,
                 .environment = options.environment,
-                .bounds = options.bounds.value_or(
-                    Bounds{glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)}),
+                .bounds = bounds,
                 .moving = options.moving,
                 .light_budget = options.light_budget,
+                .bake = bake ? bake->get() : nullptr,
                 .stop = options.stop,
                 .unlit = options.unlit,
                 .gl = on_device,

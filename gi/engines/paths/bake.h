@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/bake/precomputation.h"
+#include "gi/engines/paths/gathering_points.h"
+#include "gi/engines/paths/groups.h"
+#include "gi/engines/paths/light_paths.h"
+#include "gi/engines/paths/point_grid.h"
+
+namespace lucarne::gi::paths {
+
+/// What does not change while lights, cameras and materials do. Surfels are not needed any more.
+struct LightPaths {
+    std::vector<GatheringPoint> points;
+    uint32_t rays_a_point = 0;
+    std::vector<uint32_t> rays;  ///< of each point: the groups whose light they bring; kNone: none
+    Groups groups;               ///< leaf_of is empty
+    EntryPoints entries;
+    std::vector<uint32_t> links;  ///< of each leaf: kLinks groups; kNone: none
+    /// Of each entry point: the leaves of the kVertices - 1 vertices of its photon path.
+    std::vector<uint32_t> photons;
+};
+
+/// An entry point: position, side, and what it reflects.
+struct Entry {
+    glm::vec3 position{0.0f}, normal{0.0f};
+    float radius = 0;  ///< m
+    glm::vec3 albedo{0.0f};
+    uint32_t material = 0;
+};
+
+/// The result of the precomputation. An engine may keep it longer than a frame.
+class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBake> {
+ public:
+    LightPaths paths;
+    std::vector<Entry> entries;  ///< of paths.entries
+    PointGrid near;              ///< of the gathering points, with their reaches on pixels
+    PointGrid far;               ///< likewise, for pixels that no reach covers
+};
+
+extern const Precomputes kPathsPrecomputes;
+
+/// Gathering points serve pixels somewhat beyond their reach, so that several always do; pixels that none
+/// serves take the nearest one within kFarReach times its reach.
+inline constexpr float kPixelReach = 1.6f, kFarReach = 8;
+
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,74 @@
+#include "gi/engines/paths/cosine_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "gi/lighting/area_points.h"
+#include "gi/shared/brdf.h"
+#include "gi/tracing/light_sampling.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+/// Rays along the surface would have cross sections without end.
+constexpr float kLeastCosine = 0.1f;
+
+}  // namespace
+
+RayStart start_at(std::span<const Surfel> surfels, Side side) {
+    const Surfel& s = surfels[side / 2];
+    return {s.position, normal_of(surfels, side), s.radius};
+}
+
+glm::vec3 cosine_direction(const glm::vec3& normal, const glm::dvec2& square) {
+    const glm::dvec2 disc = on_disc(2.0 * square - 1.0);
+    const double height = std::sqrt(std::max(0.0, 1 - glm::dot(disc, disc)));
+    glm::vec3 tangent, bitangent;
+    tracing::frame_of(normal, tangent, bitangent);
+    return glm::normalize(tangent * static_cast<float>(disc.x) + bitangent * static_cast<float>(disc.y) +
+                          normal * static_cast<float>(height));
+}
+
+glm::dvec2 even_point(uint32_t i, uint64_t seed, uint64_t stream) {
+    Random random(seed, stream);
+    glm::dvec2 shift;
+    shift.x = random.uniform();
+    shift.y = random.uniform();
+    return glm::fract(shift + static_cast<double>(i) * kR2);
+}
+
+RayHit follow(const tracing::SurfelTracer& tracer, const RayStart& start, const glm::vec3& direction,
+              uint32_t count, float& distance) {
+    const glm::vec3 origin = tracing::offset_origin(start.position, start.normal, start.radius);
+    const auto found = tracer.nearest(origin, direction);
+    distance = std::numeric_limits<float>::infinity();
+    if (!found) return {};
+    const Surfel& hit = tracer.surfels()[*found];
+    const float slope = glm::dot(direction, hit.normal);
+    const float along = std::abs(slope) > 1e-6f ? glm::dot(hit.position - origin, hit.normal) / slope
+                                                : glm::distance(hit.position, origin);
+    distance = std::max(along, 0.0f);
+    const float cosine = std::max(glm::dot(direction, start.normal), kLeastCosine);
+    return {2 * *found + (slope > 0 ? 1u : 0u),
+            distance * std::sqrt(kPi / (static_cast<float>(count) * cosine))};
+}
+
+float trace_rays(const tracing::SurfelTracer& tracer, const RayStart& start, uint64_t seed, uint64_t stream,
+                 std::span<RayHit> hits) {
+    const auto count = static_cast<uint32_t>(hits.size());
+    double nearness = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        float distance = 0;
+        hits[i] = follow(tracer, start, cosine_direction(start.normal, even_point(i, seed, stream)), count,
+                         distance);
+        nearness += 1 / std::max<double>(distance, 1e-6);
+    }
+    return static_cast<float>(count / std::max(nearness, 1e-12));
+}
+
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "gi/engines/paths/sides.h"
+#include "gi/tracing/surfel_tracer.h"
+
+namespace lucarne::gi::paths {
+
+/// Where a ray starts: on a side, lifted by a radius.
+struct RayStart {
+    glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
+    float radius = 0;
+};
+RayStart start_at(std::span<const Surfel> surfels, Side side);
+
+/// What a ray meets.
+struct RayHit {
+    Side side = kNone;  ///< kNone: it leaves the scene
+    float width = 0;    ///< edge of a square as large as the ray's cross section there, m
+};
+
+/// Returns the direction of the hemisphere about a unit normal that belongs to a point of the unit square:
+/// even points give directions whose density is cos / pi (Malley's method over the concentric map of
+/// Shirley & Chiu 1997).
+glm::vec3 cosine_direction(const glm::vec3& normal, const glm::dvec2& square);
+
+/// Returns point `i` of `count` that are even in the unit square, in any order, shifted by (seed, stream).
+glm::dvec2 even_point(uint32_t i, uint64_t seed, uint64_t stream);
+
+/// Follows one of `count` rays of a point. Their directions have the density cos / pi, so each stands for a
+/// solid angle of pi / (count cos); the width of its cross section is the root of that times the distance
+/// (Igehy 1999, "Tracing ray differentials", for rays from one point). Sets `distance`, m; infinite if it
+/// hits nothing.
+RayHit follow(const tracing::SurfelTracer& tracer, const RayStart& start, const glm::vec3& direction,
+              uint32_t count, float& distance);
+
+/// Traces hits.size() even rays of a point and returns the harmonic mean of their lengths, m; rays that hit
+/// nothing count as infinitely long.
+float trace_rays(const tracing::SurfelTracer& tracer, const RayStart& start, uint64_t seed, uint64_t stream,
+                 std::span<RayHit> hits);
+
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,149 @@
+#include "gi/engines/paths/gathering_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "io/core/parallel.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+/// More points than this take larger spacings: their rays take 64 MB.
+constexpr size_t kMostPoints = 65536;
+constexpr float kLargerSpacing = 1.5f;
+/// The largest angle between a point's normal and a surface that uses its light, as the paper: 10 degrees.
+constexpr float kSpawnTurn = 0.12325684f;  // root of 1 - cos
+constexpr size_t kFewestAtOnce = 16, kMostAtOnce = 1024, kCandidatesAtOnce = 32768;
+constexpr size_t kTestsAPiece = 1024, kTracedAPiece = 8;
+
+}  // namespace
+
+PointChooser::PointChooser(const tracing::SurfelTracer& tracer, const Spacing& spacing, uint32_t rays,
+                           uint64_t seed)
+    : tracer_(tracer), rays_(rays), seed_(seed) {
+    std::vector<std::pair<uint64_t, Side>> keys(2 * tracer.surfels().size());
+    for (Side side = 0; side < keys.size(); ++side) keys[side] = {mix64(seed, side), side};
+    std::ranges::sort(keys);
+    for (const auto& [key, side] : keys) order_.push_back(side);
+    state_.spacing = spacing;
+    start_over();
+}
+
+/// Forgets all points, for a new spacing.
+void PointChooser::start_over() {
+    state_.next = 0;
+    state_.points.clear();
+    state_.hits.clear();
+    grid_.clear();
+    normals_.clear();
+    const auto& surfels = tracer_.surfels();
+    for (const Surfel& s : surfels)
+        normals_[cell_key(s.position, facing_of(s.normal))] += s.normal * std::max(s.area, 1e-12f);
+}
+
+/// Names a cell as large as the least spacing, for one facing. Opposite facings share it.
+uint64_t PointChooser::cell_key(const glm::vec3& position, uint32_t facing) const {
+    const glm::ivec3 cell(glm::clamp(glm::floor(position / state_.spacing.least), -1e9f, 1e9f));
+    const auto bits = [](int v) { return static_cast<uint64_t>(v) & 0xfffff; };
+    return uint64_t{facing} << 60 | bits(cell.z) << 40 | bits(cell.y) << 20 | bits(cell.x);
+}
+
+/// Returns the mean normal about a side: the noise of single normals would multiply the points.
+glm::vec3 PointChooser::smooth_normal(Side side) const {
+    const Surfel& s = tracer_.surfels()[side / 2];
+    const uint32_t facing = facing_of(s.normal);
+    glm::vec3 sum = s.normal * 1e-12f;
+    if (const auto found = normals_.find(cell_key(s.position, facing)); found != normals_.end())
+        sum += found->second;
+    if (const auto found = normals_.find(cell_key(s.position, facing ^ 1)); found != normals_.end())
+        sum -= found->second;
+    // Two sheets may cancel each other.
+    const float length = glm::length(sum);
+    glm::vec3 mean = length > 0 ? sum / length : s.normal;
+    if (glm::dot(mean, s.normal) < 0) mean = -mean;
+    if (glm::dot(mean, s.normal) < 0.5f) mean = s.normal;
+    return side % 2 ? -mean : mean;
+}
+
+bool PointChooser::is_covered(const glm::vec3& position, const glm::vec3& normal) const {
+    bool covered = false;
+    grid_.visit(position, [&](uint32_t i) {
+        const GatheringPoint& point = state_.points[i];
+        if (!covered) covered = error_of(point, point.reach, kSpawnTurn, position, normal) < 1;
+    });
+    return covered;
+}
+
+bool PointChooser::restore(State state) {
+    if (state.next > order_.size() || state.hits.size() != state.points.size() * rays_ ||
+        state.points.size() > kMostPoints || !(state.spacing.least >= state_.spacing.least) ||
+        !(state.spacing.most >= state_.spacing.most) || !std::isfinite(state.spacing.most))
+        return false;
+    for (const GatheringPoint& p : state.points)
+        if (p.side >= order_.size() || !(p.reach > 0) || !(p.reach <= state.spacing.most)) return false;
+    for (const RayHit& hit : state.hits)
+        if ((hit.side >= order_.size() && hit.side != kNone) || !std::isfinite(hit.width)) return false;
+    state_.spacing = state.spacing;
+    start_over();
+    state_ = std::move(state);
+    for (uint32_t i = 0; i < state_.points.size(); ++i)
+        grid_.add(i, state_.points[i].position, state_.points[i].reach);
+    return true;
+}
+
+double PointChooser::share() const {
+    return order_.empty() ? 1 : static_cast<double>(state_.next) / static_cast<double>(order_.size());
+}
+
+bool PointChooser::advance() {
+    // Candidates that pass the test against the points before this step are traced together; they are then
+    // tested again one after the other.
+    const size_t most = std::clamp(state_.points.size() / 2, kFewestAtOnce, kMostAtOnce);
+    const size_t first = state_.next;
+    const size_t last =
+        std::min(order_.size(), first + std::max(kMostAtOnce, kCandidatesAtOnce * most / kMostAtOnce));
+    std::vector<glm::vec3> normals(last - first);
+    std::vector<uint8_t> covered(last - first);
+    parallel_ranges(last - first, kTestsAPiece, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Side side = order_[first + i];
+            normals[i] = smooth_normal(side);
+            covered[i] = is_covered(tracer_.surfels()[side / 2].position, normals[i]);
+        }
+    });
+    std::vector<size_t> passed;
+    for (size_t i = 0; i < covered.size() && passed.size() < most; ++i)
+        if (!covered[i]) passed.push_back(i);
+    state_.next = passed.size() == most ? first + passed.back() + 1 : last;
+    std::vector<RayHit> hits(passed.size() * rays_);
+    std::vector<float> lengths(passed.size());
+    parallel_ranges(passed.size(), kTracedAPiece, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Side side = order_[first + passed[i]];
+            const Surfel& s = tracer_.surfels()[side / 2];
+            lengths[i] = trace_rays(tracer_, {s.position, normals[passed[i]], s.radius}, seed_, side,
+                                    std::span(hits).subspan(i * rays_, rays_));
+        }
+    });
+    for (size_t i = 0; i < passed.size(); ++i) {
+        const Side side = order_[first + passed[i]];
+        const glm::vec3 position = tracer_.surfels()[side / 2].position, normal = normals[passed[i]];
+        if (is_covered(position, normal)) continue;
+        if (state_.points.size() == kMostPoints) {
+            state_.spacing.least *= kLargerSpacing;
+            state_.spacing.most *= kLargerSpacing;
+            start_over();
+            return true;
+        }
+        const float reach = std::clamp(lengths[i] / 2, state_.spacing.least, state_.spacing.most);
+        grid_.add(static_cast<uint32_t>(state_.points.size()), position, reach);
+        state_.points.push_back({position, normal, reach, side});
+        const auto own = hits.begin() + static_cast<std::ptrdiff_t>(i * rays_);
+        state_.hits.insert(state_.hits.end(), own, own + rays_);
+    }
+    return state_.next < order_.size();
+}
+
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,240 @@
+#include "gi/engines/paths/groups.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "octree/tree/key.h"
+#include "octree/tree/radix_sort.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+constexpr uint32_t kLevels = 20;     ///< of the octree: one bit of each coordinate a level
+constexpr size_t kFewestInCell = 4;  ///< surfels; cells with fewer are not divided
+constexpr float kFit = 1.25f;        ///< a cell fits into a ray that is this much narrower
+/// Groups whose planes are farther apart than this share of their cell are different surfaces.
+constexpr float kOnePlane = 0.25f;
+/// Fewer leaves than this that see each other see nothing else: the inside of walls, and foliage. They are
+/// not joined.
+constexpr uint32_t kFewestOfAir = 16;
+constexpr float kLeastWeight = 1e-12f;  ///< m^2, of surfels without an area
+
+/// Returns the root of a number's tree, and shortens the way to it.
+uint32_t root_of(std::vector<uint32_t>& next, uint32_t number) {
+    while (next[number] != number) number = next[number] = next[next[number]];
+    return number;
+}
+
+}  // namespace
+
+uint32_t Groups::fitting(uint32_t leaf, float width) const {
+    uint32_t group = leaf;
+    while (parent[group] != kNone && cell[parent[group]] <= kFit * width) group = parent[group];
+    return group;
+}
+
+GroupBuilder::GroupBuilder(std::span<const Surfel> surfels, std::span<const RayHit> hits, float least_cell)
+    : surfels_(surfels), leaf_of_(2 * surfels.size(), kNone) {
+    glm::vec3 low(3e38f), high(-3e38f);
+    for (const Surfel& s : surfels) {
+        low = glm::min(low, s.position);
+        high = glm::max(high, s.position);
+    }
+    if (surfels.empty()) low = high = glm::vec3(0.0f);
+    const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
+    const double edge = std::max({size.x, size.y, size.z, 1e-6});
+    edge_ = static_cast<float>(edge);
+    std::vector<octree::CodeIndex> codes;
+    for (uint32_t i = 0; i < surfels.size(); ++i) {
+        const glm::dvec3 at =
+            (glm::dvec3(surfels[i].position) - glm::dvec3(low)) * (((1u << kLevels) - 1) / edge);
+        codes.push_back({octree::morton(static_cast<uint64_t>(at.x), static_cast<uint64_t>(at.y),
+                                        static_cast<uint64_t>(at.z)),
+                         i});
+    }
+    octree::sort_by_code(codes, 3 * kLevels);
+    for (const octree::CodeIndex& code : codes) order_.push_back(code.index);
+    // The level whose cells fit into the narrowest ray that ends on each surfel.
+    std::vector<uint8_t> wanted(surfels.size(), 0);
+    for (const RayHit& hit : hits) {
+        if (hit.side == kNone) continue;
+        const double narrowest = std::max({kFit * hit.width, least_cell, 1e-9f});
+        const double level = std::ceil(std::log2(edge / narrowest));
+        uint8_t& most = wanted[hit.side / 2];
+        most = std::max(most, static_cast<uint8_t>(std::clamp<double>(level, 0, kLevels)));
+    }
+    if (surfels.empty()) return;
+    levels_.push_back({{.first = 0, .last = order_.size()}});
+    for (uint32_t level = 0; level < levels_.size(); ++level) {
+        std::vector<Cell> finer;
+        for (Cell& cell : levels_[level]) {
+            bool divides = level < kLevels && cell.last - cell.first > kFewestInCell;
+            if (divides) {
+                divides = false;
+                for (size_t i = cell.first; i < cell.last && !divides; ++i)
+                    divides = wanted[order_[i]] > level;
+            }
+            if (!divides) {
+                make_leaves(cell);
+                continue;
+            }
+            const uint32_t shift = 3 * (kLevels - 1 - level);
+            cell.first_part = static_cast<uint32_t>(finer.size());
+            for (size_t first = cell.first; first < cell.last;) {
+                const uint64_t octant = codes[first].code >> shift;
+                size_t last = first + 1;
+                while (last < cell.last && codes[last].code >> shift == octant) ++last;
+                finer.push_back({.first = first, .last = last});
+                first = last;
+            }
+            cell.last_part = static_cast<uint32_t>(finer.size());
+        }
+        if (!finer.empty()) levels_.push_back(std::move(finer));
+    }
+    airs_.resize(facts_.size());
+    std::iota(airs_.begin(), airs_.end(), 0u);
+}
+
+void GroupBuilder::add(Facts& sum, const Facts& more) {
+    sum.normal += more.normal;
+    const float weight = sum.weight + more.weight;
+    sum.centre += (more.centre - sum.centre) * (more.weight / weight);
+    sum.weight = weight;
+    sum.area += more.area;
+    sum.radius = std::max(sum.radius, more.radius);
+}
+
+void GroupBuilder::add_leaf(std::span<const Side> sides, uint32_t facing) {
+    const auto number = static_cast<uint32_t>(facts_.size());
+    Facts facts{.facing = facing};
+    for (const Side side : sides) {
+        const Surfel& s = surfels_[side / 2];
+        const float weight = std::max(s.area, kLeastWeight);
+        add(facts,
+            {weight * normal_of(surfels_, side), s.position, weight, std::max(s.area, 0.0f), s.radius});
+        leaf_of_[side] = number;
+    }
+    facts_.push_back(facts);
+    sides_.insert(sides_.end(), sides.begin(), sides.end());
+    starts_.push_back(static_cast<uint32_t>(sides_.size()));
+}
+
+/// Divides the sides in a cell by what they face, and where there is room between parallel sheets.
+void GroupBuilder::make_leaves(Cell& cell) {
+    cell.first_leaf = leaves();
+    std::array<std::vector<Side>, kFacings> facing;
+    for (size_t i = cell.first; i < cell.last; ++i)
+        for (const Side side : {2 * order_[i], 2 * order_[i] + 1})
+            facing[facing_of(normal_of(surfels_, side))].push_back(side);
+    for (uint32_t f = 0; f < kFacings; ++f) {
+        std::vector<Side>& sides = facing[f];
+        if (sides.empty()) continue;
+        glm::vec3 normal(0.0f);
+        for (const Side side : sides)
+            normal += normal_of(surfels_, side) * std::max(surfels_[side / 2].area, kLeastWeight);
+        normal = glm::normalize(normal);  // its largest component is not 0: all face the same way
+        std::vector<std::pair<float, Side>> heights;
+        for (const Side side : sides)
+            heights.emplace_back(glm::dot(normal, surfels_[side / 2].position), side);
+        std::ranges::stable_sort(heights, {}, [](const auto& item) { return item.first; });
+        // A sheet's sides keep their order along the curve, so that every part of them is spread evenly.
+        std::vector<float> gaps;  // the heights at which sheets begin
+        for (size_t i = 1; i < heights.size(); ++i) {
+            const float apart =
+                surfels_[heights[i].second / 2].radius + surfels_[heights[i - 1].second / 2].radius;
+            if (heights[i].first - heights[i - 1].first > apart) gaps.push_back(heights[i].first);
+        }
+        std::vector<std::vector<Side>> sheets(gaps.size() + 1);
+        for (const Side side : sides) {
+            const float height = glm::dot(normal, surfels_[side / 2].position);
+            const auto sheet = std::ranges::upper_bound(gaps, height) - gaps.begin();
+            sheets[static_cast<size_t>(sheet)].push_back(side);
+        }
+        for (const auto& sheet : sheets) add_leaf(sheet, f);
+    }
+    cell.last_leaf = leaves();
+}
+
+void GroupBuilder::connect(uint32_t leaf, uint32_t other) {
+    const uint32_t a = root_of(airs_, leaf), b = root_of(airs_, other);
+    airs_[std::max(a, b)] = std::min(a, b);
+}
+
+/// Returns for each leaf a number that is the same for all that see the same air; kNone if few do.
+std::vector<uint32_t> GroupBuilder::find_airs() const {
+    std::vector<uint32_t> next = airs_, airs(facts_.size()), counts(facts_.size(), 0);
+    for (uint32_t i = 0; i < airs.size(); ++i) ++counts[airs[i] = root_of(next, i)];
+    for (uint32_t& air : airs)
+        if (counts[air] < kFewestOfAir) air = kNone;
+    return airs;
+}
+
+bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other, float cell) {
+    if (one.facing != other.facing || one.air != other.air || one.air == kNone) return false;
+    const glm::vec3 normal = one.normal + other.normal;
+    const float apart = std::abs(glm::dot(normal, one.centre - other.centre));
+    return apart <= (kOnePlane * cell + std::max(one.radius, other.radius)) * glm::length(normal);
+}
+
+Groups GroupBuilder::join() const {
+    Groups groups{.leaves = leaves(), .leaf_of = leaf_of_, .first = {0}};
+    std::vector<Facts> facts = facts_;
+    const std::vector<uint32_t> airs = find_airs();
+    for (uint32_t i = 0; i < leaves(); ++i) facts[i].air = airs[i];
+    groups.parent.assign(leaves(), kNone);
+    groups.cell.resize(leaves());
+    std::vector<std::vector<uint32_t>> finer;  // of each cell of the next level: its groups
+    for (size_t level = levels_.size(); level-- > 0;) {
+        const float edge = std::ldexp(edge_, -static_cast<int>(level));
+        std::vector<std::vector<uint32_t>> found(levels_[level].size());
+        for (size_t c = 0; c < levels_[level].size(); ++c) {
+            const Cell& cell = levels_[level][c];
+            for (uint32_t leaf = cell.first_leaf; leaf < cell.last_leaf; ++leaf) {
+                groups.cell[leaf] = edge;
+                found[c].push_back(leaf);
+            }
+            std::vector<uint32_t> parts;
+            for (uint32_t part = cell.first_part; part < cell.last_part; ++part)
+                for (const uint32_t group : finer[part])
+                    if (facts[group].air != kNone) parts.push_back(group);
+            std::vector<uint32_t> next(parts.size());
+            std::iota(next.begin(), next.end(), 0u);
+            for (uint32_t i = 0; i < parts.size(); ++i)
+                for (uint32_t j = i + 1; j < parts.size(); ++j)
+                    if (on_one_surface(facts[parts[i]], facts[parts[j]], edge)) {
+                        const uint32_t a = root_of(next, i), b = root_of(next, j);
+                        next[std::max(a, b)] = std::min(a, b);
+                    }
+            for (uint32_t i = 0; i < parts.size(); ++i) {
+                if (root_of(next, i) != i) continue;
+                const auto number = groups.count();
+                Facts joined = facts[parts[i]];
+                groups.parent[parts[i]] = number;
+                groups.children.push_back(parts[i]);
+                for (uint32_t j = i + 1; j < parts.size(); ++j) {
+                    if (root_of(next, j) != i) continue;
+                    add(joined, facts[parts[j]]);
+                    groups.parent[parts[j]] = number;
+                    groups.children.push_back(parts[j]);
+                }
+                groups.first.push_back(static_cast<uint32_t>(groups.children.size()));
+                groups.parent.push_back(kNone);
+                groups.cell.push_back(edge);
+                facts.push_back(joined);
+                found[c].push_back(number);
+            }
+        }
+        groups.level_ends.push_back(groups.count());
+        finer = std::move(found);
+    }
+    for (const Facts& f : facts) groups.area.push_back(f.area);
+    return groups;
+}
+
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/engines/paths/cosine_rays.h"
+#include "gi/engines/paths/sides.h"
+
+namespace lucarne::gi::paths {
+
+/// The hierarchical volumetric data structure of Yue et al. 2007, section 5.3: sides of surfels, grouped by
+/// the cells of an adaptive octree. A group is what one cell holds of one surface: sides that face the same
+/// of six directions, lie in one plane (sheets that are farther apart than their discs are wide are
+/// separate), and see the same air. So light never passes from one side of a wall to the other, and sealed
+/// rooms stay black. Groups of larger cells join those of smaller ones.
+struct Groups {
+    uint32_t leaves = 0;               ///< the first groups are those of the finest cells
+    std::vector<uint32_t> leaf_of;     ///< of each side
+    std::vector<uint32_t> parent;      ///< of each group; kNone: it has none
+    std::vector<float> area, cell;     ///< of each group: m^2; edge of its cell, m
+    std::vector<uint32_t> first;       ///< of each larger group: of its children; and their end
+    std::vector<uint32_t> children;    ///< of larger groups, in their order
+    std::vector<uint32_t> level_ends;  ///< ends of the larger groups of each cell size, smallest first
+
+    uint32_t count() const { return static_cast<uint32_t>(parent.size()); }
+    /// Returns the largest group about this leaf whose cell fits into a ray of this width, m; the leaf
+    /// itself if none does.
+    uint32_t fitting(uint32_t leaf, float width) const;
+    bool operator==(const Groups&) const = default;
+};
+
+/// Makes groups in two passes: leaves first, whose rays tell which of them see the same air.
+class GroupBuilder {
+ public:
+    /// Divides cells until they fit into the narrowest ray that ends in them, or are about `least_cell`, m.
+    /// `surfels` must outlive it.
+    GroupBuilder(std::span<const Surfel> surfels, std::span<const RayHit> hits, float least_cell);
+
+    uint32_t leaves() const { return static_cast<uint32_t>(facts_.size()); }
+    std::span<const uint32_t> leaf_of() const { return leaf_of_; }
+    /// Returns the sides of a leaf, in an order along a curve through space.
+    std::span<const Side> sides_of(uint32_t leaf) const {
+        return std::span(sides_).subspan(starts_[leaf], starts_[leaf + 1] - starts_[leaf]);
+    }
+    /// Notes that a ray between two leaves met nothing, so both see the same air.
+    void connect(uint32_t leaf, uint32_t other);
+    /// Joins leaves to larger groups.
+    Groups join() const;
+
+ private:
+    /// What decides which groups are joined.
+    struct Facts {
+        glm::vec3 normal{0.0f};  ///< sum, weighted by area
+        glm::vec3 centre{0.0f};  ///< mean, weighted likewise
+        float weight = 0;        ///< sum of areas, m^2, never 0
+        float area = 0;          ///< m^2
+        float radius = 0;        ///< m, the largest
+        uint32_t facing = 0;
+        uint32_t air = 0;
+    };
+    /// A cell of the octree.
+    struct Cell {
+        size_t first = 0, last = 0;  ///< in order_
+        uint32_t first_part = 0,
+                 last_part = 0;  ///< its children, cells of the next level; none: its leaves follow
+        uint32_t first_leaf = 0, last_leaf = 0;
+    };
+    void make_leaves(Cell& cell);
+    void add_leaf(std::span<const Side> sides, uint32_t facing);
+    std::vector<uint32_t> find_airs() const;
+    static bool on_one_surface(const Facts& one, const Facts& other, float cell);
+    static void add(Facts& sum, const Facts& more);
+
+    std::span<const Surfel> surfels_;
+    float edge_ = 0;                         ///< of the octree, m
+    std::vector<uint32_t> order_;            ///< surfels along a curve through space
+    std::vector<std::vector<Cell>> levels_;  ///< from the root
+    std::vector<Facts> facts_;               ///< of leaves
+    std::vector<uint32_t> leaf_of_;
+    std::vector<Side> sides_;  ///< of leaves, in their order
+    std::vector<uint32_t> starts_{0};
+    std::vector<uint32_t> airs_;  ///< of leaves: the next one of a tree, which ends at its root
+};
+
+}  // namespace lucarne::gi::paths

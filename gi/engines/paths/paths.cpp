@@ -1,0 +1,193 @@
+#include "gi/engines/paths/paths.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <glm/common.hpp>
+
+#include "gi/bounce_options.h"
+#include "gi/changes.h"
+#include "gi/engines/paths/bake.h"
+#include "gi/engines/paths/entry_light.h"
+#include "gi/engines/paths/interpolation.h"
+#include "gi/engines/paths/options.h"
+#include "gi/engines/paths/relight.h"
+#include "gi/gl_frame.h"
+#include "gi/host_frame.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_gbuffers.h"
+#include "gi/lighting/light_options.h"
+#include "gi/shared/brdf.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi {
+namespace paths {
+namespace {
+
+constexpr const OptionInfo* kOptions[] = {&kBounces.info,         &kOnlyBounce.info,   &kPointSpacing.info,
+                                          &kGatherRays.info,      &kEntryPoints.info,  &kTransport.info,
+                                          &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr EngineInfo kInfo{.name = "paths",
+                           .label = "Light paths in advance",
+                           .description = "light paths computed in advance: lamps move with all bounces",
+                           .options = kOptions,
+                           .needs = {.light_cut = true, .light_views = true},
+                           .precomputes = &kPathsPrecomputes};
+
+constexpr size_t kPixelsATask = 2048;
+
+class PathsEngine final : public Engine {
+ public:
+    const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override;
+
+ protected:
+    void update(const Changes& changes) override {
+        scene_ = changes.scene;
+        cuts_ = changes.light_cuts;
+    }
+    Result<void> prepare(Frame& frame) override;
+    Result<void> render(Frame& frame) override;
+
+ private:
+    /// What the light at the gathering points depends on, beside the bake.
+    struct Basis {
+        SceneRevisions scene;
+        LightCutRevisions cuts;
+        std::vector<Light> lights;  ///< of the views
+        bool operator==(const Basis&) const = default;
+    };
+    Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
+    void add_indirect(Frame& frame);
+
+    SceneRevisions scene_;
+    LightCutRevisions cuts_;
+    Buffer materials_;
+    Sky sky_;
+    LightGBuffers light_gbuffers_;
+    uint64_t light_index_ = 0;  ///< Frame::index by which lights with a size are sampled
+    EntryLight entry_light_;
+    std::unique_ptr<Relight> relight_;
+    Basis light_of_;
+    std::vector<glm::vec3> irradiance_;  ///< at gathering points; empty: not known
+    size_t alone_ = 0;                   ///< pixels of the last frame that no gathering point reached
+};
+
+Result<void> PathsEngine::prepare(Frame& frame) {
+    if (frame.gl.cuts.light_views.size() < frame.lights.size() || !frame.gl.cuts.light)
+        return failed("paths", "the cuts of the light are missing");
+    const auto* bake = dynamic_cast<const PathsBake*>(frame.bake);
+    if (!bake) {
+        relight_.reset();
+    } else if (!relight_ || &relight_->bake() != bake) {
+        relight_ = std::make_unique<Relight>(bake->shared_from_this());
+        irradiance_.clear();
+    }
+    LUCARNE_TRY(upload_sky(frame, sky_));
+    return upload_materials(frame.gl.device, frame.materials, materials_);
+}
+
+/// Brings the light at the gathering points up to date.
+Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& views, bool any_state) {
+    Basis basis{scene_, cuts_, {}};
+    for (const LightView& view : views) basis.lights.push_back(view.light);
+    if (!irradiance_.empty() && light_of_ == basis) return {};
+    irradiance_.clear();
+    std::vector<glm::vec3> entering;
+    {
+        const TimedPass pass(frame, "entry points");
+        LUCARNE_TRY(entry_light_.set_entries(frame, relight_->bake().entries));
+        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, views, light_gbuffers_, any_state));
+    }
+    if (frame.stopped()) return {};
+    const EngineSettings& s = frame.settings;
+    const bool only = s[kOnlyBounce] >= 0;
+    const auto last = only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces];
+    timed(frame, "photon energies", [&] { relight_->enter(device_materials(frame.materials), entering); });
+    timed(frame, "bounces", [&] { relight_->bounce({only ? last : 1, last}, s[kTransport]); });
+    irradiance_ = timed(frame, "final gathering", [&] { return relight_->gather(); });
+    light_of_ = std::move(basis);
+    return {};
+}
+
+/// Adds what pixels reflect of the light at the gathering points about them.
+void PathsEngine::add_indirect(Frame& frame) {
+    const TimedPass pass(frame, "interpolation");
+    const PathsBake& bake = relight_->bake();
+    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    const std::vector<Material> materials = device_materials(frame.materials);
+    auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
+    std::atomic<size_t> alone = 0;
+    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t begin, size_t end) {
+        size_t own = 0;
+        for (size_t i = begin; i < end; ++i) {
+            const SurfacePoint& at = surfaces[i];
+            if (!(at.radius > 0)) continue;
+            bool is_alone = false;
+            const glm::vec3 arriving =
+                irradiance_at(bake, irradiance_, at.position - frame.bake_offset, at.normal, is_alone);
+            own += is_alone;
+            const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
+            radiance[i] += glm::vec4((r.kd + r.ks) / kPi * arriving, 0);
+        }
+        alone += own;
+    });
+    alone_ = alone;
+    upload_radiance(frame, radiance);
+}
+
+Result<void> PathsEngine::render(Frame& frame) {
+    frame.gl.radiance.clear(0);
+    const EngineSettings& s = frame.settings;
+    const bool direct = wants_direct(s), indirect = wants_indirect(s) && relight_;
+    alone_ = 0;
+    if (!direct && !indirect) return {};
+    if (direct)
+        LUCARNE_TRY(timed(frame, "emission", [&] { return add_own_light(frame, materials_, sky_, false); }));
+    // In motion shadows may be those of a moment ago; they are renewed as far as the time goes.
+    const bool in_parts = frame.moving && !frame.light_budget.whole();
+    if (!in_parts) light_index_ = frame.index;
+    Frame sampled = frame;
+    sampled.index = light_index_;
+    const std::vector<LightView> views = light_views(sampled, sky_.directions);
+    Device& device = frame.gl.device;
+    light_gbuffers_.begin(device, views, views.size());
+    if (in_parts) LUCARNE_TRY(light_gbuffers_.renew(frame, views));
+    for (const LightView& from : views) {
+        if (!direct) break;
+        if (frame.stopped()) return {};
+        LUCARNE_ASSIGN(const GBuffer* seen, timed(frame, "light G-buffer", [&] {
+                           return in_parts ? light_gbuffers_.look_at_any_state(device, from)
+                                           : light_gbuffers_.look(device, from);
+                       }));
+        LUCARNE_TRY(timed(frame, "direct light", [&] { return add_light(frame, materials_, from, *seen); }));
+    }
+    if (!indirect) return {};
+    LUCARNE_TRY(relight(frame, views, in_parts));
+    if (frame.stopped() || irradiance_.empty()) return {};
+    add_indirect(frame);
+    return {};
+}
+
+std::vector<std::pair<std::string, double>> PathsEngine::stats() const {
+    if (!relight_) return {{"gathering_points", 0}};
+    const LightPaths& paths = relight_->bake().paths;
+    return {{"gathering_points", paths.points.size()},
+            {"gathering_rays", paths.rays.size()},
+            {"entry_points", paths.entries.sides.size()},
+            {"leaves", paths.groups.leaves},
+            {"groups", paths.groups.count()},
+            {"lonely_pixels", alone_}};
+}
+
+}  // namespace
+}  // namespace paths
+
+EngineEntry paths_engine() {
+    return {paths::kInfo, []() -> std::unique_ptr<Engine> { return std::make_unique<paths::PathsEngine>(); }};
+}
+
+}  // namespace lucarne::gi

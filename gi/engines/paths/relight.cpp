@@ -1,0 +1,158 @@
+#include "gi/engines/paths/relight.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "gi/shared/brdf.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+constexpr size_t kGroupsATask = 1024, kPointsATask = 64, kEntriesATask = 4096;
+
+}  // namespace
+
+void Relight::enter(std::span<const Material> materials, std::span<const glm::vec3> irradiance) {
+    const EntryPoints& points = bake_->paths.entries;
+    const uint32_t leaves = bake_->paths.groups.leaves;
+    energies_.resize(bake_->entries.size());
+    first_.assign(leaves, glm::vec3(0.0f));
+    reflectances_.assign(leaves, glm::vec3(0.0f));
+    parallel_ranges(leaves, kGroupsATask, [&](size_t begin, size_t end) {
+        for (size_t leaf = begin; leaf < end; ++leaf) {
+            const uint32_t first = points.first[leaf], last = points.first[leaf + 1];
+            const float share = 1 / static_cast<float>(std::max(last - first, 1u));
+            for (uint32_t i = first; i < last; ++i) {
+                const Entry& entry = bake_->entries[i];
+                const Material& material = materials[entry.material % materials.size()];
+                const Reflectance r = make_reflectance(material, entry.albedo);
+                const glm::vec3 reflectance = r.kd + r.ks;
+                energies_[i] = kPi * glm::vec3(material.emission) + reflectance * irradiance[i];
+                first_[leaf] += share * energies_[i];
+                reflectances_[leaf] += share * reflectance;
+            }
+        }
+    });
+}
+
+/// Sets the light of larger groups to the mean of their children, by area.
+void Relight::coarsen(std::vector<glm::vec3>& light) const {
+    const Groups& groups = bake_->paths.groups;
+    light.resize(groups.count());
+    uint32_t begin = groups.leaves;
+    for (const uint32_t end : groups.level_ends) {
+        parallel_ranges(end - begin, kGroupsATask, [&](size_t first, size_t last) {
+            for (size_t i = begin + first; i < begin + last; ++i) {
+                const size_t larger = i - groups.leaves;
+                glm::vec3 sum(0.0f);
+                for (uint32_t c = groups.first[larger]; c < groups.first[larger + 1]; ++c)
+                    sum += groups.area[groups.children[c]] * light[groups.children[c]];
+                light[i] = groups.area[i] > 0 ? sum / groups.area[i] : glm::vec3(0.0f);
+            }
+        });
+        begin = end;
+    }
+}
+
+void Relight::follow_links(const std::vector<glm::vec3>& from, std::vector<glm::vec3>& to) const {
+    const LightPaths& paths = bake_->paths;
+    to.assign(paths.groups.leaves, glm::vec3(0.0f));
+    parallel_ranges(paths.groups.leaves, kGroupsATask, [&](size_t begin, size_t end) {
+        for (size_t leaf = begin; leaf < end; ++leaf) {
+            if (paths.entries.first[leaf] == paths.entries.first[leaf + 1]) continue;
+            glm::vec3 sum(0.0f);
+            for (size_t i = leaf * kLinks; i < (leaf + 1) * kLinks; ++i)
+                if (paths.links[i] != kNone) sum += from[paths.links[i]];
+            to[leaf] = reflectances_[leaf] * (sum / static_cast<float>(kLinks));
+        }
+    });
+}
+
+void Relight::make_photon_index() {
+    const LightPaths& paths = bake_->paths;
+    const size_t count = bake_->entries.size();
+    index_.resize(kVertices - 1);
+    for (uint32_t vertex = 0; vertex + 1 < kVertices; ++vertex) {
+        const auto leaf_of = [&](size_t entry) { return paths.photons[entry * (kVertices - 1) + vertex]; };
+        PhotonIndex& index = index_[vertex];
+        index.first.assign(paths.groups.leaves + 1, 0);
+        for (size_t i = 0; i < count; ++i)
+            if (leaf_of(i) != kNone) ++index.first[leaf_of(i) + 1];
+        for (size_t leaf = 0; leaf < paths.groups.leaves; ++leaf) index.first[leaf + 1] += index.first[leaf];
+        index.entries.resize(index.first.back());
+        std::vector<uint32_t> next = index.first;
+        for (size_t i = 0; i < count; ++i)
+            if (leaf_of(i) != kNone) index.entries[next[leaf_of(i)]++] = static_cast<uint32_t>(i);
+    }
+}
+
+/// Reflects every photon at this vertex of its path, from 1, and sets the radiosity of the leaves: the sum of
+/// the photons' energies over the area (Yue et al. 2007, section 6.2, without bins of directions, since
+/// light leaves evenly).
+void Relight::follow_photons(uint32_t vertex, std::vector<glm::vec3>& to) {
+    const LightPaths& paths = bake_->paths;
+    if (index_.empty()) make_photon_index();
+    parallel_ranges(energies_.size(), kEntriesATask, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const uint32_t leaf = paths.photons[i * (kVertices - 1) + vertex - 1];
+            energies_[i] = leaf == kNone ? glm::vec3(0.0f) : energies_[i] * reflectances_[leaf];
+        }
+    });
+    const PhotonIndex& index = index_[vertex - 1];
+    to.assign(paths.groups.leaves, glm::vec3(0.0f));
+    parallel_ranges(paths.groups.leaves, kGroupsATask, [&](size_t begin, size_t end) {
+        for (size_t leaf = begin; leaf < end; ++leaf) {
+            if (!(paths.groups.area[leaf] > 0)) continue;
+            glm::vec3 sum(0.0f);
+            for (uint32_t i = index.first[leaf]; i < index.first[leaf + 1]; ++i)
+                sum += energies_[index.entries[i]];
+            to[leaf] = sum / paths.groups.area[leaf];
+        }
+    });
+}
+
+void Relight::bounce(const Bounces& bounces, Transport transport) {
+    const LightPaths& paths = bake_->paths;
+    std::vector<glm::vec3> light = first_, next;
+    sum_.assign(paths.groups.count(), glm::vec3(0.0f));
+    if (transport == Transport::photons) {
+        // From here on energies_ holds those of the photons, W.
+        for (uint32_t leaf = 0; leaf < paths.groups.leaves; ++leaf) {
+            const uint32_t first = paths.entries.first[leaf], last = paths.entries.first[leaf + 1];
+            for (uint32_t i = first; i < last; ++i)
+                energies_[i] *= paths.groups.area[leaf] / static_cast<float>(last - first);
+        }
+    }
+    for (uint32_t bounce = 1; bounce <= bounces.last; ++bounce) {
+        coarsen(light);
+        if (bounce >= bounces.first)
+            for (size_t i = 0; i < sum_.size(); ++i) sum_[i] += light[i];
+        if (bounce == bounces.last) break;
+        if (transport == Transport::photons) {
+            if (bounce == kVertices) break;
+            follow_photons(bounce, next);
+        } else {
+            follow_links(light, next);
+        }
+        std::swap(light, next);
+    }
+}
+
+std::vector<glm::vec3> Relight::gather() const {
+    const LightPaths& paths = bake_->paths;
+    std::vector<glm::vec3> irradiance(paths.points.size());
+    const float share = 1 / static_cast<float>(paths.rays_a_point);
+    parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            glm::vec3 sum(0.0f);
+            const uint32_t* rays = paths.rays.data() + i * paths.rays_a_point;
+            for (uint32_t ray = 0; ray < paths.rays_a_point; ++ray)
+                if (rays[ray] != kNone) sum += sum_[rays[ray]];
+            irradiance[i] = share * sum;
+        }
+    });
+    return irradiance;
+}
+
+}  // namespace lucarne::gi::paths

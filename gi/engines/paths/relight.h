@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/engines/paths/bake.h"
+#include "gi/engines/paths/options.h"
+#include "gi/shared/material.h"
+
+namespace lucarne::gi::paths {
+
+/// Computes the light at gathering points from that at entry points, without any ray. Every sum pulls its
+/// terms in a fixed order, so the result is the same on every run and any number of threads.
+///
+/// Light is radiosity, W/m^2: what leaves a surface in all directions, evenly. Lobes are spread evenly.
+class Relight {
+ public:
+    explicit Relight(std::shared_ptr<const PathsBake> bake) : bake_(std::move(bake)) {}
+    const PathsBake& bake() const { return *bake_; }
+
+    /// Which bounces count: the first and the last one, from 1.
+    struct Bounces {
+        uint32_t first = 1, last = 1;
+    };
+    /// Sets what entry points send out: emission, and what they reflect of `irradiance`, W/m^2 (one an entry
+    /// point). `materials`: as many as a surfel can refer to (device_materials()).
+    void enter(std::span<const Material> materials, std::span<const glm::vec3> irradiance);
+    /// Lets that light bounce. Photons have no more than four bounces.
+    void bounce(const Bounces& bounces, Transport transport);
+    /// Returns the irradiance at each gathering point, W/m^2, by the light of these bounces.
+    std::vector<glm::vec3> gather() const;
+
+    /// Radiosity of each group after bounce().
+    std::span<const glm::vec3> radiosity() const { return sum_; }
+
+ private:
+    void coarsen(std::vector<glm::vec3>& light) const;
+    void follow_links(const std::vector<glm::vec3>& from, std::vector<glm::vec3>& to) const;
+    void follow_photons(uint32_t vertex, std::vector<glm::vec3>& to);
+    void make_photon_index();
+
+    std::shared_ptr<const PathsBake> bake_;
+    std::vector<glm::vec3> energies_;      ///< of each entry point: radiosity, then of its photon, W
+    std::vector<glm::vec3> first_;         ///< radiosity of each leaf without any bounce
+    std::vector<glm::vec3> reflectances_;  ///< of each leaf
+    std::vector<glm::vec3> sum_;           ///< radiosity of each group
+    /// The photons of each leaf (the photon index map of the paper): for each vertex after the first, where
+    /// those of each leaf begin, and the numbers of their entry points.
+    struct PhotonIndex {
+        std::vector<uint32_t> first, entries;
+    };
+    std::vector<PhotonIndex> index_;
+};
+
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,135 @@
+#include "gi/engines/paths/bake.h"
+
+#include <cstring>
+
+#include "gi/engines/paths/interpolation.h"
+#include "io/core/random.h"
+#include "tests/gi/engines/paths/paths_scenes.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+BakeInput small_box() {
+    return input_of(scenes::closed_box(1, 24, glm::vec3(.5f)), 80, 64);
+}
+
+TEST(PathsBake, RestoredIsTheSameBitForBit) {
+    const BakeInput input = small_box();
+    const auto work = kPathsPrecomputes.make();
+    EXPECT_EQ(work->share(), 0);
+    ASSERT_NE(finish(*work, input), nullptr);
+    EXPECT_EQ(work->share(), 1);
+    const auto restored = kPathsPrecomputes.make();
+    const auto done = restored->restore(input, work->save());
+    ASSERT_TRUE(done) << done.error().line();
+    EXPECT_EQ(restored->share(), 1);
+    EXPECT_EQ(restored->save(), work->save());
+}
+
+TEST(PathsBake, AnInterruptedOneIsContinuedAsIfItHadNeverBeenStopped) {
+    const BakeInput input = small_box();
+    const auto whole = kPathsPrecomputes.make();
+    finish(*whole, input);
+    for (const int taken : {1, 4, 12}) {
+        const auto first = kPathsPrecomputes.make();
+        StepRunner<const BakeInput> runner;
+        runner.start(first->steps(input));
+        for (int i = 0; i < taken; ++i) ASSERT_TRUE(runner.run(input, StepBudget::timed(0)));
+        const auto second = kPathsPrecomputes.make();
+        if (first->share() > 0) {
+            const auto done = second->restore(input, first->save());
+            ASSERT_TRUE(done) << done.error().line();
+        }
+        finish(*second, input);
+        EXPECT_EQ(second->save(), whole->save()) << taken;
+    }
+}
+
+TEST(PathsBake, ChangedColoursAndMaterialsNeedNoRay) {
+    BakeInput input = small_box();
+    const auto old = kPathsPrecomputes.make();
+    finish(*old, input);
+    for (size_t i = 0; i < input.cut.surfels.size(); ++i) {
+        input.cut.surfels[i].albedo = glm::vec3(static_cast<float>(i % 7) / 7);
+        input.cut.surfels[i].material = static_cast<uint32_t>(i % 3);
+    }
+    EXPECT_FALSE(kPathsPrecomputes.colours || kPathsPrecomputes.materials || kPathsPrecomputes.lights ||
+                 kPathsPrecomputes.environment);
+    const auto edited = kPathsPrecomputes.make();
+    ASSERT_TRUE(edited->restore(input, old->save()));
+    const auto with_edit = std::dynamic_pointer_cast<const PathsBake>(edited->snapshot());
+    const auto fresh = bake_of(input);
+    ASSERT_EQ(with_edit->entries.size(), fresh->entries.size());
+    for (size_t i = 0; i < fresh->entries.size(); ++i) {
+        EXPECT_EQ(with_edit->entries[i].albedo, fresh->entries[i].albedo);
+        EXPECT_EQ(with_edit->entries[i].material, fresh->entries[i].material);
+        EXPECT_EQ(with_edit->entries[i].position, fresh->entries[i].position);
+    }
+    EXPECT_EQ(edited->save(), old->save());
+}
+
+TEST(PathsBake, DamagedSectionsAreRefusedOrHarmless) {
+    const BakeInput input = small_box();
+    const auto work = kPathsPrecomputes.make();
+    finish(*work, input);
+    const BakeSections whole = work->save();
+    Random random(5);
+    size_t refused = 0;
+    for (const auto& [name, bytes] : whole) {
+        BakeSections without = whole;
+        without.erase(name);
+        EXPECT_FALSE(kPathsPrecomputes.make()->restore(input, without)) << name;
+        BakeSections shorter = whole;
+        if (!bytes.empty()) shorter[name].resize(bytes.size() / 2 / 4 * 4);
+        EXPECT_FALSE(kPathsPrecomputes.make()->restore(input, shorter)) << name;
+        for (int i = 0; i < 8 && !bytes.empty(); ++i) {
+            BakeSections wrong = whole;
+            const size_t at = random.next() % (bytes.size() / 4) * 4;
+            const uint32_t word = i % 2 ? 0x7fffffffu : static_cast<uint32_t>(random.next());
+            std::memcpy(wrong[name].data() + at, &word, 4);
+            refused += !kPathsPrecomputes.make()->restore(input, wrong);
+        }
+    }
+    EXPECT_GT(refused, 50u);
+}
+
+TEST(PathsBake, EntryPointsStandForEqualPartsOfTheirGroup) {
+    const auto bake = bake_of(small_box());
+    const EntryPoints& entries = bake->paths.entries;
+    double covered = 0;
+    for (uint32_t leaf = 0; leaf < bake->paths.groups.leaves; ++leaf) {
+        if (entries.first[leaf] == entries.first[leaf + 1]) continue;
+        covered += bake->paths.groups.area[leaf];
+    }
+    EXPECT_NEAR(covered, 6, 1e-3) << "the inner sides; no ray meets the outer ones";
+    for (const Side side : entries.sides) EXPECT_EQ(side % 2, 0u);
+}
+
+TEST(PathsBake, OfScenesWithoutSurfacesIsEmpty) {
+    for (const auto& surfels : {std::vector<Surfel>{}, std::vector<Surfel>(3, Surfel{}),
+                                std::vector<Surfel>{{kO, kZ, glm::vec3(.5f), .1f, .01f, 0}}}) {
+        const auto bake = bake_of(input_of(surfels));
+        ASSERT_NE(bake, nullptr);
+        EXPECT_TRUE(bake->entries.empty());
+        bool alone = false;
+        const std::vector<glm::vec3> light(bake->paths.points.size(), kO);
+        EXPECT_EQ(irradiance_at(*bake, light, kO, kZ, alone), kO);
+    }
+}
+
+TEST(Interpolation, KeepsEvenLightAndStaysOnItsSide) {
+    const auto bake = bake_of(input_of(scenes::closed_box(1, 40, glm::vec3(.5f)), 60, 64));
+    std::vector<glm::vec3> light;
+    for (const GatheringPoint& point : bake->paths.points)
+        light.push_back(point.side % 2 ? kO : glm::vec3(1, 2, 3));
+    for (const Surfel& s : scenes::closed_box(1, 23, glm::vec3(.5f))) {
+        bool alone = true;
+        const glm::vec3 inside = irradiance_at(*bake, light, s.position, s.normal, alone);
+        EXPECT_FALSE(alone);
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(inside[i], 1.0f + static_cast<float>(i), 1e-4f);
+        EXPECT_EQ(irradiance_at(*bake, light, s.position, -s.normal, alone), kO);
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,94 @@
+#include "gi/engines/paths/gathering_points.h"
+
+#include <cmath>
+
+#include "io/core/parallel.h"
+#include "tests/gi/engines/paths/paths_scenes.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+constexpr Spacing kSpacing{.03f, .2f};
+constexpr float kTurn = .123257f;  // root of 1 - cos 10 degrees
+
+PointChooser::State all_points(const tracing::SurfelTracer& tracer) {
+    PointChooser chooser(tracer, kSpacing, 64, 1);
+    while (chooser.advance()) {
+    }
+    return chooser.take();
+}
+
+class GatheringPoints : public testing::Test {
+ protected:
+    std::unique_ptr<tracing::SurfelTracer> tracer_ = tracer_of(scenes::closed_box(1, 60, glm::vec3(.5f)));
+};
+
+TEST_F(GatheringPoints, CoverEverySideAndNoneCoversAnother) {
+    const auto state = all_points(*tracer_);
+    for (Side side = 0; side < 2 * tracer_->surfels().size(); ++side) {
+        double least = 1e9;
+        for (const GatheringPoint& point : state.points)
+            least = std::min<double>(
+                least, error_of(point, point.reach, kTurn, tracer_->surfels()[side / 2].position,
+                                normal_of(tracer_->surfels(), side)));
+        ASSERT_LT(least, 1) << side;
+    }
+    for (size_t i = 0; i < state.points.size(); ++i)
+        for (size_t earlier = 0; earlier < i; ++earlier) {
+            const GatheringPoint& point = state.points[earlier];
+            ASSERT_GE(error_of(point, point.reach, kTurn, state.points[i].position, state.points[i].normal),
+                      1);
+        }
+}
+
+TEST_F(GatheringPoints, AreDenserInCornersAndSparseOutside) {
+    const auto state = all_points(*tracer_);
+    size_t inside = 0, outside = 0;
+    for (const GatheringPoint& point : state.points) {
+        EXPECT_GE(point.reach, kSpacing.least);
+        EXPECT_LE(point.reach, kSpacing.most);
+        (point.side % 2 == 0 ? inside : outside) += 1;
+        const glm::vec3 to_middle = glm::abs(point.position - .5f);
+        const float corner = std::max({std::min(to_middle.x, to_middle.y), std::min(to_middle.x, to_middle.z),
+                                       std::min(to_middle.y, to_middle.z)});
+        if (point.side % 2) {
+            EXPECT_EQ(point.reach, kSpacing.most) << "its rays hit nothing";
+        } else if (corner > .48f) {
+            EXPECT_LT(point.reach, .08f);
+        }
+    }
+    EXPECT_GT(inside, 2 * outside);
+}
+
+TEST_F(GatheringPoints, AreTheSameWhereverTheyWereInterruptedAndWithOneThread) {
+    const auto whole = all_points(*tracer_);
+    const ThreadLimit one(1);
+    PointChooser first(*tracer_, kSpacing, 64, 1);
+    for (int i = 0; i < 5; ++i) first.advance();
+    PointChooser second(*tracer_, kSpacing, 64, 1);
+    ASSERT_TRUE(second.restore(first.take()));
+    while (second.advance()) {
+    }
+    EXPECT_EQ(second.state().points, whole.points);
+    ASSERT_EQ(second.state().hits.size(), whole.hits.size());
+    for (size_t i = 0; i < whole.hits.size(); ++i) ASSERT_EQ(second.state().hits[i].side, whole.hits[i].side);
+}
+
+TEST_F(GatheringPoints, DamagedOnesAreNotContinued) {
+    const auto state = all_points(*tracer_);
+    const auto refuses = [&](const auto& damage) {
+        auto wrong = state;
+        damage(wrong);
+        return !PointChooser(*tracer_, kSpacing, 64, 1).restore(wrong);
+    };
+    EXPECT_FALSE(refuses([](auto&) {}));
+    EXPECT_TRUE(refuses([](auto& s) { s.points[3].side = 1'000'000; }));
+    EXPECT_TRUE(refuses([](auto& s) { s.points[3].reach = std::nanf(""); }));
+    EXPECT_TRUE(refuses([](auto& s) { s.hits[3].side = 1'000'000; }));
+    EXPECT_TRUE(refuses([](auto& s) { s.hits.pop_back(); }));
+    EXPECT_TRUE(refuses([](auto& s) { s.next = 1'000'000; }));
+    EXPECT_TRUE(refuses([](auto& s) { s.spacing.least = 0; }));
+}
+
+}  // namespace
+}  // namespace lucarne::gi::paths
