@@ -132,7 +132,7 @@ void add_sky(const SkyDirections& sky, const Strata& strata, const DeviceCut* cu
         light.kind = kDirectionalLight;
         light.direction = glm::vec4(-direction, 0);
         light.strength = glm::vec4(flux / static_cast<float>(strata.count()), 0);
-        target.push_back({light, cut});
+        target.push_back({light, cut, true});
     }
 }
 

@@ -13,6 +13,7 @@ class DeviceCut;
 struct SharpLight {
     Light light;
     const DeviceCut* cut;
+    bool of_sky = false;  ///< stands in for the sky
 };
 
 /// Returns the lights of the frame. Lights with a size are replaced by sharp lights that stand in for them

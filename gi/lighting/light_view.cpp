@@ -129,12 +129,12 @@ CameraView view_of(const Light& light, uint32_t face, const Frame& frame, uint32
 std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky) {
     std::vector<LightView> views;
     const uint32_t side = frame.settings[kLightResolution];
-    for (const auto& [light, cut] : sharp_lights(frame, sky)) {
+    for (const auto& [light, cut, of_sky] : sharp_lights(frame, sky)) {
         // Many such samples make a light with a size, whose shadows are soft, so half the resolution is
         // enough.
         const uint32_t resolution = light.kind == kCosineLight ? std::max(side / 2, 1u) : side;
         for (uint32_t face = 0; face < light_faces(light); ++face)
-            views.push_back({light, cut, face, view_of(light, face, frame, resolution)});
+            views.push_back({light, cut, face, view_of(light, face, frame, resolution), of_sky});
     }
     return views;
 }

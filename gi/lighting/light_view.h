@@ -15,6 +15,7 @@ struct LightView {
     const DeviceCut* cut;
     uint32_t face;
     CameraView view;
+    bool of_sky = false;  ///< of a light that stands in for the sky
 };
 
 /// Returns the views of all lights of the frame (`sky` is that of its environment), with kLightResolution

@@ -19,10 +19,11 @@ namespace {
 constexpr float kLeastShare = 0.125f, kLeastRadii = 4;
 /// Of the smallest cells, in R-: between gathering points light is interpolated anyway.
 constexpr float kLeastCell = 1;
-constexpr uint32_t kLeavesAtOnce = 8192;
+/// Of the cells from all over which links start, in R+: light of further bounces is smooth.
+constexpr float kLinkReach = 0.5f;
 constexpr size_t kPathsAtOnce = 131072;
 /// Shares of the work: gathering points, links, photons.
-constexpr double kPointsShare = 0.55, kLinksShare = 0.35;
+constexpr double kPointsShare = 0.75, kLinksShare = 0.2;
 
 Spacing spacing_of(const BakeInput& input, std::span<const Surfel> surfels) {
     const float diagonal = glm::distance(input.cut.bounds.min, input.cut.bounds.max);
@@ -31,36 +32,6 @@ Spacing spacing_of(const BakeInput& input, std::span<const Surfel> surfels) {
     const float most = std::max(static_cast<float>(input.settings[kPointSpacing]) * 1e-3f * diagonal, 1e-6f);
     const float least = std::max(kLeastShare * most, kLeastRadii * static_cast<float>(radius));
     return {least, std::max(least, most)};
-}
-
-/// Marks the leaves whose light anything asks for: rays of gathering points, and links of such leaves.
-std::vector<uint8_t> used_leaves(const LightPaths& paths) {
-    const Groups& groups = paths.groups;
-    std::vector<uint8_t> used(groups.count(), 0);
-    for (const uint32_t group : paths.rays)
-        if (group != kNone) used[group] = 1;
-    std::vector<uint8_t> followed(groups.leaves, 0);
-    for (bool found = true; found;) {
-        found = false;
-        for (uint32_t group = groups.count(); group-- > groups.leaves;) {
-            if (!used[group]) continue;
-            const uint32_t larger = group - groups.leaves;
-            for (uint32_t i = groups.first[larger]; i < groups.first[larger + 1]; ++i)
-                used[groups.children[i]] = 1;
-        }
-        for (uint32_t leaf = 0; leaf < groups.leaves; ++leaf) {
-            if (!used[leaf] || followed[leaf]) continue;
-            followed[leaf] = 1;
-            for (uint32_t i = leaf * kLinks; i < (leaf + 1) * kLinks; ++i) {
-                const uint32_t group = paths.links[i];
-                if (group == kNone || used[group]) continue;
-                used[group] = 1;
-                found = true;
-            }
-        }
-    }
-    used.resize(groups.leaves);
-    return used;
 }
 
 /// The steps: gathering points with their rays, groups, links, photon paths.
@@ -88,13 +59,15 @@ class PathsPrecomputation final : public Precomputation {
         };
         add("gathering points", &PathsPrecomputation::choose_points);
         add("groups", &PathsPrecomputation::make_groups);
+        add("larger groups", &PathsPrecomputation::join_groups);
         add("links", &PathsPrecomputation::make_links);
         add("entry points", &PathsPrecomputation::make_entries);
         add("photon paths", &PathsPrecomputation::make_photons);
         steps.push_back({"snapshot", [this](const BakeInput& input) -> Result<StepResult> {
                              LUCARNE_TRY(publish(input, std::move(work_)));
-                             chooser_.reset();
+                             links_.reset();
                              builder_.reset();
+                             chooser_.reset();
                              tracer_.reset();
                              return StepResult::done;
                          }});
@@ -107,7 +80,7 @@ class PathsPrecomputation final : public Precomputation {
         double share = kPointsShare * std::min(chooser_->share(), 0.999);
         if (!builder_) return share;
         share = kPointsShare;
-        if (builder_->leaves() > 0) share += kLinksShare * next_leaf_ / builder_->leaves();
+        if (links_) share += kLinksShare * links_->share();
         if (!work_.entries.sides.empty())
             share += (1 - kPointsShare - kLinksShare) * static_cast<double>(next_path_) /
                      static_cast<double>(work_.entries.sides.size() + 1);
@@ -132,36 +105,33 @@ class PathsPrecomputation final : public Precomputation {
     StepResult make_groups(const BakeInput&) {
         const PointChooser::State& state = chooser_->state();
         builder_.emplace(tracer_->surfels(), state.hits, kLeastCell * state.spacing.least);
-        link_hits_.assign(size_t{builder_->leaves()} * kLinks, {});
         return StepResult::done;
     }
-    StepResult make_links(const BakeInput& input) {
-        const uint32_t last = std::min(builder_->leaves(), next_leaf_ + kLeavesAtOnce);
-        trace_links(*tracer_, *builder_, next_leaf_, last, input.settings[kSeed],
-                    std::span(link_hits_).subspan(size_t{next_leaf_} * kLinks));
-        next_leaf_ = last;
-        return next_leaf_ < builder_->leaves() ? StepResult::again : StepResult::done;
-    }
-    StepResult make_entries(const BakeInput& input) {
+    StepResult join_groups(const BakeInput& input) {
         const PointChooser::State& state = chooser_->state();
         const std::span<const uint32_t> leaf_of = builder_->leaf_of();
         const uint32_t rays = input.settings[kGatherRays];
         for (size_t i = 0; i < state.hits.size(); ++i)
             if (state.hits[i].side != kNone)
                 builder_->connect(leaf_of[state.points[i / rays].side], leaf_of[state.hits[i].side]);
-        for (size_t i = 0; i < link_hits_.size(); ++i)
-            if (link_hits_[i].side != kNone)
-                builder_->connect(static_cast<uint32_t>(i / kLinks), leaf_of[link_hits_[i].side]);
         work_.groups = builder_->join();
-        const auto group_of = [&](const RayHit& hit) {
-            return hit.side == kNone ? kNone : work_.groups.fitting(leaf_of[hit.side], hit.width);
-        };
+        links_.emplace(*tracer_, *builder_, work_.groups, kLinkReach * state.spacing.most,
+                       input.settings[kSeed]);
         work_.rays_a_point = rays;
-        for (const RayHit& hit : state.hits) work_.rays.push_back(group_of(hit));
-        for (const RayHit& hit : link_hits_) work_.links.push_back(group_of(hit));
-        link_hits_ = {};
-        work_.entries = choose_entries(tracer_->surfels(), *builder_, work_.groups.area, used_leaves(work_),
+        for (const RayHit& hit : state.hits) {
+            work_.rays.push_back(hit.side == kNone ? kNone
+                                                   : work_.groups.fitting(leaf_of[hit.side], hit.width));
+            if (work_.rays.back() != kNone) links_->ask(work_.rays.back());
+        }
+        return StepResult::done;
+    }
+    StepResult make_links(const BakeInput&) {
+        return links_->advance() ? StepResult::again : StepResult::done;
+    }
+    StepResult make_entries(const BakeInput& input) {
+        work_.entries = choose_entries(tracer_->surfels(), *builder_, work_.groups.area, links_->used(),
                                        input.settings[kEntryPoints]);
+        work_.links = links_->take();
         work_.photons.assign(work_.entries.sides.size() * (kVertices - 1), kNone);
         return StepResult::done;
     }
@@ -188,11 +158,8 @@ class PathsPrecomputation final : public Precomputation {
             bake->entries.push_back(
                 {s.position, side % 2 ? -s.normal : s.normal, s.radius, s.albedo, s.material});
         }
-        for (uint32_t i = 0; i < paths.points.size(); ++i) {
-            const GatheringPoint& point = paths.points[i];
-            bake->near.add(i, point.position, kPixelReach * point.reach);
-            bake->far.add(i, point.position, kFarReach * point.reach);
-        }
+        bake->near = PointCells(paths.points, kPixelReach);
+        bake->far = PointCells(paths.points, kFarReach);
         bake->paths = std::move(paths);
         bake_ = std::move(bake);
         return {};
@@ -201,8 +168,7 @@ class PathsPrecomputation final : public Precomputation {
     std::unique_ptr<tracing::SurfelTracer> tracer_;
     std::optional<PointChooser> chooser_;
     std::optional<GroupBuilder> builder_;
-    std::vector<RayHit> link_hits_;
-    uint32_t next_leaf_ = 0;
+    std::optional<LinkBuilder> links_;
     size_t next_path_ = 0;
     LightPaths work_;
     std::shared_ptr<const PathsBake> bake_;

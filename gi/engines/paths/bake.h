@@ -10,7 +10,7 @@
 #include "gi/engines/paths/gathering_points.h"
 #include "gi/engines/paths/groups.h"
 #include "gi/engines/paths/light_paths.h"
-#include "gi/engines/paths/point_grid.h"
+#include "gi/engines/paths/point_cells.h"
 
 namespace lucarne::gi::paths {
 
@@ -21,7 +21,7 @@ struct LightPaths {
     std::vector<uint32_t> rays;  ///< of each point: the groups whose light they bring; kNone: none
     Groups groups;               ///< leaf_of is empty
     EntryPoints entries;
-    std::vector<uint32_t> links;  ///< of each leaf: kLinks groups; kNone: none
+    Links links;
     /// Of each entry point: the leaves of the kVertices - 1 vertices of its photon path.
     std::vector<uint32_t> photons;
 };
@@ -39,8 +39,8 @@ class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBa
  public:
     LightPaths paths;
     std::vector<Entry> entries;  ///< of paths.entries
-    PointGrid near;              ///< of the gathering points, with their reaches on pixels
-    PointGrid far;               ///< likewise, for pixels that no reach covers
+    PointCells near;             ///< of the gathering points, with their reaches on pixels
+    PointCells far;              ///< likewise, for pixels that no reach covers
 };
 
 extern const Precomputes kPathsPrecomputes;

@@ -15,7 +15,7 @@ constexpr size_t kMostPoints = 65536;
 constexpr float kLargerSpacing = 1.5f;
 /// The largest angle between a point's normal and a surface that uses its light, as the paper: 10 degrees.
 constexpr float kSpawnTurn = 0.12325684f;  // root of 1 - cos
-constexpr size_t kFewestAtOnce = 16, kMostAtOnce = 1024, kCandidatesAtOnce = 32768;
+constexpr size_t kFewestAtOnce = 16, kMostAtOnce = 512, kCandidatesAtOnce = 32768;
 constexpr size_t kTestsAPiece = 1024, kTracedAPiece = 8;
 
 }  // namespace
@@ -100,7 +100,7 @@ double PointChooser::share() const {
 bool PointChooser::advance() {
     // Candidates that pass the test against the points before this step are traced together; they are then
     // tested again one after the other.
-    const size_t most = std::clamp(state_.points.size() / 2, kFewestAtOnce, kMostAtOnce);
+    const size_t most = std::clamp(state_.points.size() / 4, kFewestAtOnce, kMostAtOnce);
     const size_t first = state_.next;
     const size_t last =
         std::min(order_.size(), first + std::max(kMostAtOnce, kCandidatesAtOnce * most / kMostAtOnce));

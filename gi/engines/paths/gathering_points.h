@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -28,14 +30,17 @@ struct GatheringPoint {
 /// `turn`, which is the root of 1 - cos of the largest angle. Distances across the surface count
 /// kAcross times, which the paper does not do: steps of stairs are no neighbours.
 inline constexpr float kAcross = 4;
-inline float error_of(const GatheringPoint& point, float reach, float turn, const glm::vec3& position,
-                      const glm::vec3& normal) {
+inline float squared_error_of(const GatheringPoint& point, float reach, float turn, const glm::vec3& position,
+                              const glm::vec3& normal) {
     const glm::vec3 offset = position - point.position;
     const float across = glm::dot(offset, point.normal);
     const float distance2 = glm::dot(offset, offset) + (kAcross * kAcross - 1) * across * across;
     const float turned2 = 1 - glm::dot(normal, point.normal);
-    const float error2 = std::max(distance2 / (reach * reach), turned2 / (turn * turn));
-    return std::sqrt(std::max(error2, 0.0f));
+    return std::max(distance2 / (reach * reach), turned2 / (turn * turn));
+}
+inline float error_of(const GatheringPoint& point, float reach, float turn, const glm::vec3& position,
+                      const glm::vec3& normal) {
+    return std::sqrt(std::max(squared_error_of(point, reach, turn, position, normal), 0.0f));
 }
 
 /// Distances between gathering points, m: R- and R+ of eq. 7.

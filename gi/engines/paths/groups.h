@@ -26,6 +26,11 @@ struct Groups {
     std::vector<uint32_t> level_ends;  ///< ends of the larger groups of each cell size, smallest first
 
     uint32_t count() const { return static_cast<uint32_t>(parent.size()); }
+    /// The groups that a larger one joins.
+    std::span<const uint32_t> children_of(uint32_t group) const {
+        const uint32_t begin = first[group - leaves], end = first[group - leaves + 1];
+        return std::span(children).subspan(begin, end - begin);
+    }
     /// Returns the largest group about this leaf whose cell fits into a ray of this width, m; the leaf
     /// itself if none does.
     uint32_t fitting(uint32_t leaf, float width) const;

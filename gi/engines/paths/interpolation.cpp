@@ -1,7 +1,10 @@
 #include "gi/engines/paths/interpolation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "io/core/parallel.h"
 
 namespace lucarne::gi::paths {
 namespace {
@@ -10,6 +13,7 @@ namespace {
 constexpr float kPixelTurn = 0.42525f;  // root of 1 - cos
 /// Pixels with less weight than this in all take the nearest point.
 constexpr float kLeastSum = 1e-3f;
+constexpr size_t kPointsAPiece = 256;
 
 }  // namespace
 
@@ -19,8 +23,9 @@ glm::vec3 irradiance_at(const PathsBake& bake, std::span<const glm::vec3> irradi
     float weights = 0;
     bake.near.visit(position, [&](uint32_t i) {
         const GatheringPoint& point = bake.paths.points[i];
-        const float weight = 1 - error_of(point, kPixelReach * point.reach, kPixelTurn, position, normal);
-        if (!(weight > 0)) return;
+        const float error2 = squared_error_of(point, kPixelReach * point.reach, kPixelTurn, position, normal);
+        if (error2 >= 1) return;
+        const float weight = 1 - std::sqrt(std::max(error2, 0.0f));
         sum += weight * irradiance[i];
         weights += weight;
     });
@@ -37,6 +42,18 @@ glm::vec3 irradiance_at(const PathsBake& bake, std::span<const glm::vec3> irradi
         nearest = irradiance[i];
     });
     return nearest;
+}
+
+std::vector<glm::vec3> smooth(const PathsBake& bake, std::span<const glm::vec3> irradiance) {
+    std::vector<glm::vec3> smoothed(irradiance.size());
+    parallel_ranges(smoothed.size(), kPointsAPiece, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const GatheringPoint& point = bake.paths.points[i];
+            bool alone = false;
+            smoothed[i] = irradiance_at(bake, irradiance, point.position, point.normal, alone);
+        }
+    });
+    return smoothed;
 }
 
 }  // namespace lucarne::gi::paths

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -16,5 +17,9 @@ namespace lucarne::gi::paths {
 /// there is none either.
 glm::vec3 irradiance_at(const PathsBake& bake, std::span<const glm::vec3> irradiance,
                         const glm::vec3& position, const glm::vec3& normal, bool& alone);
+
+/// Lets gathering points share their light with those about them, as pixels do: it takes the blotches of
+/// their few rays away.
+std::vector<glm::vec3> smooth(const PathsBake& bake, std::span<const glm::vec3> irradiance);
 
 }  // namespace lucarne::gi::paths

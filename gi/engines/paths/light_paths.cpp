@@ -2,18 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/common.hpp>
 
 #include "gi/engines/paths/cosine_rays.h"
 #include "gi/lighting/area_points.h"
+#include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::paths {
 namespace {
 
-constexpr size_t kLeavesAPiece = 64, kPathsAPiece = 1024;
+constexpr size_t kOriginsAtOnce = 2048, kOriginsAPiece = 16, kPathsAPiece = 1024;
 
 /// Returns which of these sides lies at a share 0..1 of the area of all, in their order.
 class ByArea {
@@ -56,26 +58,97 @@ EntryPoints choose_entries(std::span<const Surfel> surfels, const GroupBuilder& 
     return entries;
 }
 
-void trace_links(const tracing::SurfelTracer& tracer, const GroupBuilder& builder, uint32_t first,
-                 uint32_t last, uint64_t seed, std::span<RayHit> hits) {
-    parallel_ranges(last - first, kLeavesAPiece, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            const auto leaf = static_cast<uint32_t>(first + i);
-            const ByArea starts(tracer.surfels(), builder.sides_of(leaf));
-            Random random(seed, leaf);
-            const double shift = random.uniform();
+LinkBuilder::LinkBuilder(const tracing::SurfelTracer& tracer, const GroupBuilder& builder,
+                         const Groups& groups, float reach, uint64_t seed)
+    : tracer_(tracer),
+      builder_(builder),
+      groups_(groups),
+      reach_(reach),
+      seed_(seed),
+      asked_(groups.count(), 0),
+      used_(groups.leaves, 0),
+      number_of_(groups.count(), kNone) {
+    links_.origin_of.assign(groups.leaves, kNone);
+}
+
+void LinkBuilder::ask(uint32_t group) {
+    std::vector<uint32_t> open = {group};
+    while (!open.empty()) {
+        const uint32_t asked = open.back();
+        open.pop_back();
+        if (std::exchange(asked_[asked], 1)) continue;
+        if (asked >= groups_.leaves) {
+            const auto children = groups_.children_of(asked);
+            open.insert(open.end(), children.begin(), children.end());
+            continue;
+        }
+        used_[asked] = 1;
+        const uint32_t origin = groups_.fitting(asked, reach_);
+        if (number_of_[origin] == kNone) {
+            number_of_[origin] = static_cast<uint32_t>(origins_.size());
+            origins_.push_back(origin);
+        }
+        links_.origin_of[asked] = number_of_[origin];
+    }
+}
+
+std::vector<Side> LinkBuilder::sides_of(uint32_t group) const {
+    std::vector<Side> sides;
+    std::vector<uint32_t> open = {group};
+    while (!open.empty()) {
+        const uint32_t part = open.back();
+        open.pop_back();
+        if (part < groups_.leaves) {
+            const auto own = builder_.sides_of(part);
+            sides.insert(sides.end(), own.begin(), own.end());
+        } else {
+            const auto children = groups_.children_of(part);
+            open.insert(open.end(), children.begin(), children.end());
+        }
+    }
+    return sides;
+}
+
+double LinkBuilder::share() const {
+    return origins_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(origins_.size());
+}
+
+bool LinkBuilder::advance() {
+    const size_t first = next_, last = std::min(origins_.size(), first + kOriginsAtOnce);
+    links_.groups.resize(last * kLinks, kNone);
+    std::vector<uint32_t> directions((last - first) * kLinks);
+    parallel_ranges(last - first, kOriginsAPiece, [&](size_t begin, size_t end) {
+        for (size_t i = first + begin; i < first + end; ++i) {
+            const uint32_t origin = origins_[i];
+            const std::vector<Side> sides = sides_of(origin);
+            const ByArea starts(tracer_.surfels(), sides);
+            const double shift = Random(seed_, origin).uniform();
             for (uint32_t link = 0; link < kLinks; ++link) {
                 // Places and directions are both even; a stride that is prime to kLinks makes them
                 // independent.
                 const Side side = starts.at(((link * 29) % kLinks + shift) / kLinks);
-                const RayStart start = start_at(tracer.surfels(), side);
+                const RayStart start = start_at(tracer_.surfels(), side);
+                const glm::dvec2 at = even_point(link, seed_, origin);
                 float distance = 0;
-                hits[i * kLinks + link] =
-                    follow(tracer, start, cosine_direction(start.normal, even_point(link, seed, leaf)),
-                           kLinks, distance);
+                const glm::vec3 direction = cosine_direction(start.normal, at);
+                directions[(i - first) * kLinks + link] = encode_octahedral(direction);
+                const RayHit hit = follow(tracer_, start, direction, kLinks, distance);
+                if (hit.side != kNone)
+                    links_.groups[i * kLinks + link] = groups_.fitting(groups_.leaf_of[hit.side], hit.width);
             }
         }
     });
+    next_ = last;
+    for (size_t origin = first; origin < last; ++origin) {
+        for (size_t i = origin * kLinks; i < (origin + 1) * kLinks; ++i) {
+            if (links_.groups[i] != kNone)
+                ask(links_.groups[i]);
+            else
+                links_.open.push_back(directions[i - first * kLinks]);
+        }
+        links_.first_open.push_back(static_cast<uint32_t>(links_.open.size()));
+    }
+    return next_ < origins_.size();
 }
 
 void trace_photons(const tracing::SurfelTracer& tracer, std::span<const uint32_t> leaf_of,

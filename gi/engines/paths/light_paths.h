@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -26,12 +27,50 @@ struct EntryPoints {
 EntryPoints choose_entries(std::span<const Surfel> surfels, const GroupBuilder& builder,
                            std::span<const float> areas, std::span<const uint8_t> used, uint64_t count);
 
-/// Rays of a leaf that tell how the light of others reaches it.
+/// Rays of a place that tell how the light of others reaches it.
 inline constexpr uint32_t kLinks = 64;
-/// Traces kLinks rays from all over each of the leaves [first, last) into `hits`, which starts at leaf
-/// `first`.
-void trace_links(const tracing::SurfelTracer& tracer, const GroupBuilder& builder, uint32_t first,
-                 uint32_t last, uint64_t seed, std::span<RayHit> hits);
+/// Which light arrives at each leaf: its surface's, by kLinks rays from all over a group that holds it.
+struct Links {
+    std::vector<uint32_t> origin_of;  ///< of each leaf: the number of that group among all; kNone: none
+    std::vector<uint32_t> groups;     ///< of each of these: what its rays meet; kNone: nothing
+    /// Rays that leave the scene, and so see the sky: where those of each group begin, and their directions
+    /// as octahedral codes.
+    std::vector<uint32_t> first_open{0}, open;
+    bool operator==(const Links&) const = default;
+};
+
+/// Traces links from what anything asks the light of: first from what the rays of gathering points meet, then
+/// from what links meet.
+class LinkBuilder {
+ public:
+    /// `reach`, m: of the cells from all over which links start, unless leaves are larger. The references
+    /// must outlive it.
+    LinkBuilder(const tracing::SurfelTracer& tracer, const GroupBuilder& builder, const Groups& groups,
+                float reach, uint64_t seed);
+    /// Asks for the light of a group.
+    void ask(uint32_t group);
+    /// Traces some links. Returns whether any are left.
+    bool advance();
+    double share() const;
+
+    /// Whether the light of each leaf is asked for.
+    const std::vector<uint8_t>& used() const { return used_; }
+    Links take() { return std::move(links_); }
+
+ private:
+    std::vector<Side> sides_of(uint32_t group) const;
+
+    const tracing::SurfelTracer& tracer_;
+    const GroupBuilder& builder_;
+    const Groups& groups_;
+    float reach_;
+    uint64_t seed_;
+    std::vector<uint8_t> asked_, used_;  ///< of each group; of each leaf
+    std::vector<uint32_t> origins_;      ///< groups
+    std::vector<uint32_t> number_of_;    ///< of each group: its place in origins_
+    size_t next_ = 0;
+    Links links_;
+};
 
 /// Vertices of a photon path, its entry point included: bounces 1 to 4.
 inline constexpr uint32_t kVertices = 4;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "gi/engines/paths/interpolation.h"
 #include "gi/engines/paths/options.h"
 #include "gi/engines/paths/relight.h"
+#include "gi/gather/gather_sky.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
@@ -67,6 +69,8 @@ class PathsEngine final : public Engine {
     LightCutRevisions cuts_;
     Buffer materials_;
     Sky sky_;
+    GatherSky even_sky_;
+    std::optional<uint64_t> even_sky_of_;  ///< revision of the environment that it is made from
     LightGBuffers light_gbuffers_;
     uint64_t light_index_ = 0;  ///< Frame::index by which lights with a size are sampled
     EntryLight entry_light_;
@@ -87,28 +91,42 @@ Result<void> PathsEngine::prepare(Frame& frame) {
         irradiance_.clear();
     }
     LUCARNE_TRY(upload_sky(frame, sky_));
+    if (even_sky_of_ != scene_.environment) {
+        even_sky_ = gather_sky(frame.environment);
+        even_sky_of_ = scene_.environment;
+    }
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }
 
 /// Brings the light at the gathering points up to date.
 Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& views, bool any_state) {
+    const EngineSettings& s = frame.settings;
+    // What few links would miss needs views.
+    const bool by_links = s[kSkyLight] == SkyLight::links && !even_sky_.bright;
     Basis basis{scene_, cuts_, {}};
-    for (const LightView& view : views) basis.lights.push_back(view.light);
+    std::vector<LightView> entering_views;
+    for (const LightView& view : views) {
+        if (by_links && view.of_sky) continue;
+        entering_views.push_back(view);
+        basis.lights.push_back(view.light);
+    }
     if (!irradiance_.empty() && light_of_ == basis) return {};
     irradiance_.clear();
     std::vector<glm::vec3> entering;
     {
         const TimedPass pass(frame, "entry points");
         LUCARNE_TRY(entry_light_.set_entries(frame, relight_->bake().entries));
-        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, views, light_gbuffers_, any_state));
+        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, entering_views, light_gbuffers_, any_state));
     }
     if (frame.stopped()) return {};
-    const EngineSettings& s = frame.settings;
     const bool only = s[kOnlyBounce] >= 0;
     const auto last = only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces];
-    timed(frame, "photon energies", [&] { relight_->enter(device_materials(frame.materials), entering); });
+    timed(frame, "photon energies", [&] {
+        relight_->enter(device_materials(frame.materials), entering, by_links ? &even_sky_ : nullptr);
+    });
     timed(frame, "bounces", [&] { relight_->bounce({only ? last : 1, last}, s[kTransport]); });
-    irradiance_ = timed(frame, "final gathering", [&] { return relight_->gather(); });
+    irradiance_ =
+        timed(frame, "final gathering", [&] { return smooth(relight_->bake(), relight_->gather()); });
     light_of_ = std::move(basis);
     return {};
 }

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "gi/shared/brdf.h"
+#include "gi/shared/environment.h"
+#include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::paths {
@@ -13,22 +15,49 @@ constexpr size_t kGroupsATask = 1024, kPointsATask = 64, kEntriesATask = 4096;
 
 }  // namespace
 
-void Relight::enter(std::span<const Material> materials, std::span<const glm::vec3> irradiance) {
-    const EntryPoints& points = bake_->paths.entries;
-    const uint32_t leaves = bake_->paths.groups.leaves;
+/// Returns the irradiance by the sky, W/m^2, of the groups from which links start.
+std::vector<glm::vec3> Relight::light_of_sky(const GatherSky& sky) const {
+    const Links& links = bake_->paths.links;
+    std::vector<glm::vec3> arriving(links.first_open.size() - 1, glm::vec3(0.0f));
+    parallel_ranges(arriving.size(), kGroupsATask, [&](size_t begin, size_t end) {
+        for (size_t origin = begin; origin < end; ++origin) {
+            glm::vec3 sum(0.0f);
+            for (uint32_t i = links.first_open[origin]; i < links.first_open[origin + 1]; ++i) {
+                const glm::vec2 at = environment_place(decode_octahedral(links.open[i]), sky.rotation);
+                const auto column = static_cast<uint32_t>(at.x * static_cast<float>(sky.width));
+                const auto row = static_cast<uint32_t>(at.y * static_cast<float>(sky.height));
+                sum +=
+                    sky.texels[std::min(row, sky.height - 1) * sky.width + std::min(column, sky.width - 1)];
+            }
+            arriving[origin] = kPi / static_cast<float>(kLinks) * sum;
+        }
+    });
+    return arriving;
+}
+
+void Relight::enter(std::span<const Material> materials, std::span<const glm::vec3> irradiance,
+                    const GatherSky* sky) {
+    const LightPaths& paths = bake_->paths;
+    const EntryPoints& points = paths.entries;
+    const uint32_t leaves = paths.groups.leaves;
     energies_.resize(bake_->entries.size());
     first_.assign(leaves, glm::vec3(0.0f));
     reflectances_.assign(leaves, glm::vec3(0.0f));
+    std::vector<glm::vec3> of_sky;
+    if (sky && !sky->texels.empty()) of_sky = light_of_sky(*sky);
     parallel_ranges(leaves, kGroupsATask, [&](size_t begin, size_t end) {
         for (size_t leaf = begin; leaf < end; ++leaf) {
             const uint32_t first = points.first[leaf], last = points.first[leaf + 1];
             const float share = 1 / static_cast<float>(std::max(last - first, 1u));
+            const uint32_t origin = of_sky.empty() ? kNone : paths.links.origin_of[leaf];
+            const glm::vec3 everywhere = origin == kNone ? glm::vec3(0.0f) : of_sky[origin];
             for (uint32_t i = first; i < last; ++i) {
                 const Entry& entry = bake_->entries[i];
                 const Material& material = materials[entry.material % materials.size()];
                 const Reflectance r = make_reflectance(material, entry.albedo);
                 const glm::vec3 reflectance = r.kd + r.ks;
-                energies_[i] = kPi * glm::vec3(material.emission) + reflectance * irradiance[i];
+                energies_[i] =
+                    kPi * glm::vec3(material.emission) + reflectance * (irradiance[i] + everywhere);
                 first_[leaf] += share * energies_[i];
                 reflectances_[leaf] += share * reflectance;
             }
@@ -56,16 +85,21 @@ void Relight::coarsen(std::vector<glm::vec3>& light) const {
 }
 
 void Relight::follow_links(const std::vector<glm::vec3>& from, std::vector<glm::vec3>& to) const {
-    const LightPaths& paths = bake_->paths;
-    to.assign(paths.groups.leaves, glm::vec3(0.0f));
-    parallel_ranges(paths.groups.leaves, kGroupsATask, [&](size_t begin, size_t end) {
-        for (size_t leaf = begin; leaf < end; ++leaf) {
-            if (paths.entries.first[leaf] == paths.entries.first[leaf + 1]) continue;
+    const Links& links = bake_->paths.links;
+    std::vector<glm::vec3> arriving(links.groups.size() / kLinks, glm::vec3(0.0f));
+    parallel_ranges(arriving.size(), kGroupsATask, [&](size_t begin, size_t end) {
+        for (size_t origin = begin; origin < end; ++origin) {
             glm::vec3 sum(0.0f);
-            for (size_t i = leaf * kLinks; i < (leaf + 1) * kLinks; ++i)
-                if (paths.links[i] != kNone) sum += from[paths.links[i]];
-            to[leaf] = reflectances_[leaf] * (sum / static_cast<float>(kLinks));
+            for (size_t i = origin * kLinks; i < (origin + 1) * kLinks; ++i)
+                if (links.groups[i] != kNone) sum += from[links.groups[i]];
+            arriving[origin] = sum / static_cast<float>(kLinks);
         }
+    });
+    to.assign(links.origin_of.size(), glm::vec3(0.0f));
+    parallel_ranges(to.size(), kGroupsATask, [&](size_t begin, size_t end) {
+        for (size_t leaf = begin; leaf < end; ++leaf)
+            if (links.origin_of[leaf] != kNone)
+                to[leaf] = reflectances_[leaf] * arriving[links.origin_of[leaf]];
     });
 }
 

@@ -10,6 +10,7 @@
 
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/options.h"
+#include "gi/gather/gather_sky.h"
 #include "gi/shared/material.h"
 
 namespace lucarne::gi::paths {
@@ -28,8 +29,10 @@ class Relight {
         uint32_t first = 1, last = 1;
     };
     /// Sets what entry points send out: emission, and what they reflect of `irradiance`, W/m^2 (one an entry
-    /// point). `materials`: as many as a surfel can refer to (device_materials()).
-    void enter(std::span<const Material> materials, std::span<const glm::vec3> irradiance);
+    /// point), and of a sky (null: none; the part of it that few rays find) by the links that leave the
+    /// scene. `materials`: as many as a surfel can refer to (device_materials()).
+    void enter(std::span<const Material> materials, std::span<const glm::vec3> irradiance,
+               const GatherSky* sky);
     /// Lets that light bounce. Photons have no more than four bounces.
     void bounce(const Bounces& bounces, Transport transport);
     /// Returns the irradiance at each gathering point, W/m^2, by the light of these bounces.
@@ -39,6 +42,7 @@ class Relight {
     std::span<const glm::vec3> radiosity() const { return sum_; }
 
  private:
+    std::vector<glm::vec3> light_of_sky(const GatherSky& sky) const;
     void coarsen(std::vector<glm::vec3>& light) const;
     void follow_links(const std::vector<glm::vec3>& from, std::vector<glm::vec3>& to) const;
     void follow_photons(uint32_t vertex, std::vector<glm::vec3>& to);

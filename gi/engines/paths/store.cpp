@@ -68,7 +68,10 @@ BakeSections write_paths(const LightPaths& paths) {
     const Groups& groups = paths.groups;
     put(sections, "points", paths.points);
     put(sections, "rays", paths.rays);
-    put(sections, "links", paths.links);
+    put(sections, "links", paths.links.groups);
+    put(sections, "links of leaves", paths.links.origin_of);
+    put(sections, "open links", paths.links.open);
+    put(sections, "first open links", paths.links.first_open);
     put(sections, "photons", paths.photons);
     put(sections, "entries", paths.entries.sides);
     put(sections, "entries of leaves", paths.entries.first);
@@ -86,7 +89,10 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     Groups& groups = paths.groups;
     LUCARNE_TRY(take(sections, "points", paths.points));
     LUCARNE_TRY(take(sections, "rays", paths.rays));
-    LUCARNE_TRY(take(sections, "links", paths.links));
+    LUCARNE_TRY(take(sections, "links", paths.links.groups));
+    LUCARNE_TRY(take(sections, "links of leaves", paths.links.origin_of));
+    LUCARNE_TRY(take(sections, "open links", paths.links.open));
+    LUCARNE_TRY(take(sections, "first open links", paths.links.first_open));
     LUCARNE_TRY(take(sections, "photons", paths.photons));
     LUCARNE_TRY(take(sections, "entries", paths.entries.sides));
     LUCARNE_TRY(take(sections, "entries of leaves", paths.entries.first));
@@ -108,7 +114,11 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     if (paths.rays.size() != paths.points.size() * rays_a_point ||
         !all_below(paths.rays, groups.count(), true))
         return damaged("rays");
-    if (paths.links.size() != size_t{groups.leaves} * kLinks || !all_below(paths.links, groups.count(), true))
+    const Links& links = paths.links;
+    if (links.groups.size() % kLinks != 0 || !all_below(links.groups, groups.count(), true) ||
+        links.origin_of.size() != groups.leaves ||
+        !all_below(links.origin_of, links.groups.size() / kLinks, true) ||
+        !are_ranges(links.first_open, links.groups.size() / kLinks, links.open.size()))
         return damaged("links");
     if (!are_ranges(paths.entries.first, groups.leaves, paths.entries.sides.size()))
         return damaged("entries");

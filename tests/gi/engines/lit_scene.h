@@ -33,6 +33,7 @@ struct Lit {
     CameraView camera;
     std::vector<glm::vec4> radiance;
     std::vector<GBufferTexel> texels;
+    std::shared_ptr<const Bake> bake = nullptr;
 
     glm::vec3 at(uint32_t x, uint32_t y) const {
         const glm::vec4 v = radiance[y * camera.width + x];
@@ -57,6 +58,8 @@ struct LitOptions {
     PointSize size{};
     Clip clip{};
     std::optional<Bounds> bounds;  ///< of the scene; by default the cloud's root
+    /// What the engine has computed in advance (Lit::bake of an earlier picture); null: it computes it.
+    std::shared_ptr<const Bake> bake = nullptr;
 };
 
 /// Renders a cloud with an engine. One cut, the whole cloud, is view cut, light-view cut and light cut.
@@ -85,8 +88,13 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
     const FrameCuts cuts = needed_cuts(engine.info(), cut, options.lights.size());
     const Bounds bounds =
         options.bounds.value_or(Bounds{glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)});
-    const auto bake = bake_whole(engine.info(), (*loaded)->pool.download(cut), bounds, options.settings);
-    EXPECT_TRUE(bake) << bake.error().line();
+    if (!options.bake) {
+        auto bake = bake_whole(engine.info(), (*loaded)->pool.download(cut), bounds, options.settings);
+        EXPECT_TRUE(bake) << bake.error().line();
+        if (bake) lit.bake = std::move(*bake);
+    } else {
+        lit.bake = options.bake;
+    }
     GlFrame on_device{device, (*loaded)->pool, cuts, gbuffer, *radiance};
     Frame frame{.camera = camera,
                 .lights = options.lights,
@@ -98,7 +106,7 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 .bounds = bounds,
                 .moving = options.moving,
                 .light_budget = options.light_budget,
-                .bake = bake ? bake->get() : nullptr,
+                .bake = lit.bake.get(),
                 .stop = options.stop,
                 .unlit = options.unlit,
                 .gl = on_device,

@@ -37,10 +37,10 @@ std::shared_ptr<const PathsBake> RelightTest::bake_;
 
 TEST_F(RelightTest, FurnaceKeepsItsRadianceOnEveryBounce) {
     Relight relight(bake_);
-    relight.enter(glowing(.5f), dark());
+    relight.enter(glowing(.5f), dark(), nullptr);
     for (const Transport transport : {Transport::links, Transport::photons})
         for (const uint32_t last : {1u, 2u, 3u, 4u}) {
-            relight.enter(glowing(.5f), dark());
+            relight.enter(glowing(.5f), dark(), nullptr);
             relight.bounce({1, last}, transport);
             // Of radiance 1 - .5^(last + 1) in all, .5 is emitted; the rest is reflected irradiance.
             const double truth = kPi * (1 - std::pow(.5, last + 1) - .5) / .5;
@@ -55,7 +55,7 @@ TEST_F(RelightTest, PointsOutsideOfAClosedBoxGetNothing) {
     // Only sides within the box are lit.
     for (size_t i = 0; i < irradiance.size(); ++i)
         if (bake_->paths.entries.sides[i] % 2 == 0) irradiance[i] = glm::vec3(1e6f);
-    relight.enter(glowing(0), irradiance);
+    relight.enter(glowing(0), irradiance, nullptr);
     relight.bounce({1, 4}, Transport::links);
     const auto light = relight.gather();
     size_t outside = 0;
@@ -73,7 +73,7 @@ TEST_F(RelightTest, LightOfTheFloorReachesTheCeilingByItsFormFactor) {
     for (size_t i = 0; i < irradiance.size(); ++i)
         if (bake_->entries[i].normal.z > .5f && bake_->entries[i].position.z < .5f)
             irradiance[i] = glm::vec3(1);
-    relight.enter(glowing(0), irradiance);
+    relight.enter(glowing(0), irradiance, nullptr);
     for (const auto& [bounce, truth] : {std::pair(1u, .199825 * .5)}) {
         relight.bounce({bounce, bounce}, Transport::links);
         const auto light = relight.gather();
@@ -90,7 +90,7 @@ TEST_F(RelightTest, LightOfTheFloorReachesTheCeilingByItsFormFactor) {
 
 TEST_F(RelightTest, BouncesOneByOneAddUpToAll) {
     Relight relight(bake_);
-    relight.enter(glowing(.5f), dark());
+    relight.enter(glowing(.5f), dark(), nullptr);
     relight.bounce({1, 3}, Transport::links);
     const auto all = relight.gather();
     std::vector<glm::vec3> sum(all.size(), kO);
@@ -108,7 +108,7 @@ TEST_F(RelightTest, IsTheSameWithOneThreadAndAfterOtherLight) {
     for (size_t i = 0; i < some.size(); i += 7) some[i] = glm::vec3(1, 2, 3) * static_cast<float>(i % 13);
     for (const Transport transport : {Transport::links, Transport::photons}) {
         const auto light = [&](const std::vector<glm::vec3>& irradiance) {
-            relight.enter(glowing(0), irradiance);
+            relight.enter(glowing(0), irradiance, nullptr);
             relight.bounce({1, 4}, transport);
             return relight.gather();
         };
@@ -126,13 +126,13 @@ TEST_F(RelightTest, PhotonsBringWhatLinksBring) {
         if (bake_->entries[i].normal.x > .5f) some[i] = glm::vec3(1);
     for (const uint32_t bounce : {1u, 2u, 3u, 4u}) {
         const auto by = [&](Transport transport) {
-            relight.enter(glowing(0), some);
+            relight.enter(glowing(0), some, nullptr);
             relight.bounce({bounce, bounce}, transport);
             return inside(relight.gather());
         };
         EXPECT_NEAR(by(Transport::photons) / by(Transport::links), 1, .03) << bounce;
     }
-    relight.enter(glowing(0), some);
+    relight.enter(glowing(0), some, nullptr);
     relight.bounce({5, 5}, Transport::photons);
     EXPECT_EQ(inside(relight.gather()), 0) << "their paths have four vertices";
 }

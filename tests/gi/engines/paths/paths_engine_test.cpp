@@ -1,0 +1,165 @@
+// The engine over frames: what an edit repeats gives the same picture, bit for bit, as everything anew.
+#include <algorithm>
+#include <memory>
+
+#include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
+#include "gi/engines/paths/options.h"
+#include "gi/registry.h"
+#include "tests/gi/engines/lit_scene.h"
+#include "tests/gi/engines/soft_light_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
+
+namespace lucarne::gi {
+namespace {
+
+/// A box that a lamp lights, drawn by one engine from picture to picture.
+class PathsEngine : public OnDevice {
+ protected:
+    void SetUp() override {
+        OnDevice::SetUp();
+        auto made = make_engine("paths");
+        ASSERT_TRUE(made) << made.error().line();
+        engine_ = std::move(*made);
+        options_.settings.set(kBounces, 3);
+        options_.settings.set(paths::kPointSpacing, 6);  // bounds are those of a cube of 16 m
+        options_.settings.set(paths::kGatherRays, 64);
+        options_.settings.set(paths::kEntryPoints, 50'000);
+        options_.materials = {make_material(), make_material(.5f)};
+        options_.lights = {lamp(1.2f)};
+        auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
+        for (size_t i = 0; i < surfels.size(); i += 3) surfels[i].material = 1;
+        cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
+        options_.bake = draw().bake;  // from now on
+    }
+    void TearDown() override {
+        engine_.reset();
+        OnDevice::TearDown();
+    }
+    static Light lamp(float x) { return make_spot({x, .9f, 1.7f}, {1, 1, 0}, .6f, 5); }
+    Lit draw() { return light_up(*device, *engine_, *cloud_, camera_, options_); }
+    /// Draws with an engine that has drawn nothing before, and computes everything in advance anew.
+    Lit draw_anew() {
+        const auto fresh = make_engine("paths");
+        LitOptions anew = options_;
+        anew.bake = nullptr;
+        return light_up(*device, **fresh, *cloud_, camera_, anew);
+    }
+    double stat(std::string_view name) const {
+        const auto stats = engine_->stats();
+        const auto found =
+            std::ranges::find(stats, name, [](const auto& s) { return std::string_view(s.first); });
+        return found == stats.end() ? -1 : found->second;
+    }
+
+    std::unique_ptr<Engine> engine_;
+    std::unique_ptr<SurfelCloud> cloud_;
+    CameraView camera_ = look({.3f, .4f, .5f}, {1.2f, 1.3f, .9f}, 48, 48);
+    LitOptions options_;
+};
+
+TEST_F(PathsEngine, AMovedLampGivesThePictureOfAFreshPreparation) {
+    const Lit first = draw();
+    options_.lights = {lamp(.6f)};
+    const Lit moved = draw();
+    EXPECT_NE(moved.radiance, first.radiance);
+    EXPECT_EQ(moved.radiance, draw_anew().radiance);
+    options_.lights = {lamp(1.2f)};
+    EXPECT_EQ(draw().radiance, first.radiance) << "and back";
+}
+
+TEST_F(PathsEngine, EditedMaterialsGiveThePictureOfAFreshPreparation) {
+    const Lit first = draw();
+    options_.materials[1] = make_material(.9f, 0, 1, .2f);
+    const Lit edited = draw();
+    EXPECT_NE(edited.radiance, first.radiance);
+    EXPECT_EQ(edited.radiance, draw_anew().radiance);
+}
+
+TEST_F(PathsEngine, ALampMoreOrLessGivesThePictureOfAFreshPreparation) {
+    options_.lights.push_back(lamp(.5f));
+    EXPECT_EQ(draw().radiance, draw_anew().radiance);
+    options_.lights.erase(options_.lights.begin());
+    EXPECT_EQ(draw().radiance, draw_anew().radiance);
+    options_.lights.clear();
+    for (const glm::vec4& pixel : draw().radiance) ASSERT_EQ(glm::vec3(pixel), kO);
+}
+
+TEST_F(PathsEngine, OtherBouncesAndTransportGiveThePictureOfAFreshPreparation) {
+    for (const auto transport : {paths::Transport::photons, paths::Transport::links})
+        for (const int32_t only : {2, -1}) {
+            options_.settings.set(paths::kTransport, transport);
+            options_.settings.set(kOnlyBounce, only);
+            EXPECT_EQ(draw().radiance, draw_anew().radiance) << only;
+        }
+}
+
+TEST_F(PathsEngine, AnotherCameraRepeatsNothingButPixels) {
+    draw();
+    camera_ = look({1.5f, .4f, .5f}, {.4f, 1.3f, .9f}, 48, 48);
+    EXPECT_EQ(draw().radiance, draw_anew().radiance);
+}
+
+TEST_F(PathsEngine, ColumnsOfAnotherPackingGiveThePictureOfAFreshPreparation) {
+    // What the file keeps does not depend on colours: an edit reads it again with the new ones.
+    draw();
+    auto surfels = scenes::closed_box(2, 40, glm::vec3(.3f, .6f, .2f));
+    cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
+    auto loaded = load_cloud(*device, *cloud_);
+    ASSERT_TRUE(loaded);
+    const auto& how = *engine_->info().precomputes;
+    BakeInput input;
+    input.cut.surfels = (*loaded)->pool.download((*loaded)->cut);
+    input.cut.bounds = {glm::vec3(cloud_->header().min), glm::vec3(cloud_->header().max)};
+    input.settings = options_.settings;
+    const auto kept = how.make();
+    StepRunner<const BakeInput> runner;
+    {
+        BakeInput before = input;
+        for (Surfel& s : before.cut.surfels) s.albedo = glm::vec3(.6f);
+        runner.start(kept->steps(before));
+        ASSERT_TRUE(runner.run(before, StepBudget{}));
+    }
+    const auto restored = how.make();
+    ASSERT_TRUE(restored->restore(input, kept->save()));
+    options_.bake = restored->snapshot();
+    EXPECT_EQ(draw().radiance, draw_anew().radiance);
+}
+
+TEST_F(PathsEngine, WithoutABakeItShowsDirectLight) {
+    options_.settings.set(kOnlyBounce, 0);
+    const Lit direct = draw();
+    options_.settings.set(kOnlyBounce, -1);
+    const Lit whole = draw();
+    EXPECT_GT(mean_luminance(whole.radiance), 1.1 * mean_luminance(direct.radiance));
+    EXPECT_GT(stat("gathering_points"), 100);
+    EXPECT_LT(stat("lonely_pixels"), 3) << "of 2304";
+    class Nothing final : public Bake {};
+    options_.bake = std::make_shared<Nothing>();
+    EXPECT_EQ(draw().radiance, direct.radiance);
+    EXPECT_EQ(stat("gathering_points"), 0);
+}
+
+TEST_F(PathsEngine, TheSkyLightsAnOpenBoxAsItsLinksSay) {
+    // Without its ceiling the box is lit by the sky; both ways of the sky's light agree.
+    auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
+    std::erase_if(surfels, [](const Surfel& s) { return s.normal.z < -.5f; });
+    cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
+    options_.bake = nullptr;
+    options_.lights.clear();
+    options_.environment = scenes::even_sky(1);
+    options_.settings.set(kOnlyBounce, 1);
+    options_.settings.set(*find_option("light_samples"), int64_t{128});
+    const Lit by_links = draw();
+    options_.bake = by_links.bake;
+    options_.settings.set(paths::kSkyLight, paths::SkyLight::parallel);
+    const Lit parallel = draw();
+    EXPECT_NEAR(mean_luminance(by_links.radiance) / mean_luminance(parallel.radiance), 1, .03);
+    options_.settings.set(paths::kSkyLight, paths::SkyLight::links);
+    options_.index = 7;
+    EXPECT_EQ(draw().radiance, by_links.radiance) << "it does not differ from frame to frame";
+}
+
+}  // namespace
+}  // namespace lucarne::gi
