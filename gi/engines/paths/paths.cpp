@@ -29,9 +29,9 @@ namespace lucarne::gi {
 namespace paths {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {&kBounces.info,         &kOnlyBounce.info,   &kPointSpacing.info,
-                                          &kGatherRays.info,      &kEntryPoints.info,  &kTransport.info,
-                                          &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {
+    &kBounces.info,   &kOnlyBounce.info, &kPointSpacing.info,    &kGatherRays.info,   &kEntryPoints.info,
+    &kTransport.info, &kSkyLight.info,   &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "paths",
                            .label = "Light paths in advance",
                            .description = "light paths computed in advance: lamps move with all bounces",
