@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <functional>
 #include <optional>
-#include <string>
-#include <type_traits>
+#include <string_view>
 #include <utility>
 
 #include "gi/bounce_options.h"
 #include "gi/engines/paths/options.h"
+#include "gi/engines/paths/path_builder.h"
 #include "gi/engines/paths/store.h"
 
 namespace lucarne::gi::paths {
@@ -17,13 +17,12 @@ namespace {
 
 /// R- as a share of R+, and at least so many radii of a mean surfel.
 constexpr float kLeastShare = 0.125f, kLeastRadii = 4;
-/// Of the smallest cells, in R-: between gathering points light is interpolated anyway.
-constexpr float kLeastCell = 1;
-/// Of the cells from all over which links start, in R+: light of further bounces is smooth.
-constexpr float kLinkReach = 0.5f;
-constexpr size_t kPathsAtOnce = 131072;
-/// Shares of the work: gathering points, links, photons.
-constexpr double kPointsShare = 0.75, kLinksShare = 0.2;
+/// The first paths, for pictures after a moment: spacing in that of all, rays, entry points; and their share
+/// of the work.
+constexpr float kCoarserSpacing = 3;
+constexpr uint32_t kCoarseRays = 64;
+constexpr uint64_t kCoarseEntries = 50'000;
+constexpr double kCoarseShare = 0.05;
 
 Spacing spacing_of(const BakeInput& input, std::span<const Surfel> surfels) {
     const float diagonal = glm::distance(input.cut.bounds.min, input.cut.bounds.max);
@@ -34,40 +33,43 @@ Spacing spacing_of(const BakeInput& input, std::span<const Surfel> surfels) {
     return {least, std::max(least, most)};
 }
 
-/// The steps: gathering points with their rays, groups, links, photon paths.
+/// Makes coarse paths first, which are usable after a moment, then those that were asked for.
 class PathsPrecomputation final : public Precomputation {
  public:
     Result<void> restore(const BakeInput& input, const BakeSections& sections) override {
         if (sections.contains("rays")) {
             LUCARNE_ASSIGN(LightPaths paths, read_paths(sections, input.settings[kGatherRays]));
-            return publish(input, std::move(paths));
+            LUCARNE_TRY(publish(input, std::move(paths)));
+            finished_ = true;
+            return {};
         }
         LUCARNE_ASSIGN(PointChooser::State state, read_points(sections));
         LUCARNE_TRY(start(input));
-        if (!chooser_->restore(std::move(state))) return rejected("paths", "the points are damaged");
+        start_whole(input);
+        if (!builder_->restore(std::move(state))) return rejected("paths", "the points are damaged");
+        is_restored_ = true;
         return {};
     }
 
     std::vector<Step<const BakeInput>> steps(const BakeInput&) override {
         std::vector<Step<const BakeInput>> steps;
-        const auto add = [&](std::string_view name,
-                             StepResult (PathsPrecomputation::*step)(const BakeInput&)) {
-            steps.push_back({name, [this, step](const BakeInput& input) -> Result<StepResult> {
-                                 if (!tracer_) LUCARNE_TRY(start(input));
-                                 return (this->*step)(input);
+        if (!is_restored_) {
+            steps.push_back({"surfels", [this](const BakeInput& input) -> Result<StepResult> {
+                                 LUCARNE_TRY(start(input));
+                                 return StepResult::done;
                              }});
-        };
-        add("gathering points", &PathsPrecomputation::choose_points);
-        add("groups", &PathsPrecomputation::make_groups);
-        add("larger groups", &PathsPrecomputation::join_groups);
-        add("links", &PathsPrecomputation::make_links);
-        add("entry points", &PathsPrecomputation::make_entries);
-        add("photon paths", &PathsPrecomputation::make_photons);
+            add_steps(steps);
+            steps.push_back({"snapshot", [this](const BakeInput& input) -> Result<StepResult> {
+                                 LUCARNE_TRY(publish(input, builder_->take()));
+                                 start_whole(input);
+                                 return StepResult::done;
+                             }});
+        }
+        add_steps(steps);
         steps.push_back({"snapshot", [this](const BakeInput& input) -> Result<StepResult> {
-                             LUCARNE_TRY(publish(input, std::move(work_)));
-                             links_.reset();
+                             LUCARNE_TRY(publish(input, builder_->take()));
+                             finished_ = true;
                              builder_.reset();
-                             chooser_.reset();
                              tracer_.reset();
                              return StepResult::done;
                          }});
@@ -75,75 +77,47 @@ class PathsPrecomputation final : public Precomputation {
     }
 
     double share() const override {
-        if (bake_) return 1;
-        if (!chooser_) return builder_ ? kPointsShare : 0;
-        double share = kPointsShare * std::min(chooser_->share(), 0.999);
-        if (!builder_) return share;
-        share = kPointsShare;
-        if (links_) share += kLinksShare * links_->share();
-        if (!work_.entries.sides.empty())
-            share += (1 - kPointsShare - kLinksShare) * static_cast<double>(next_path_) /
-                     static_cast<double>(work_.entries.sides.size() + 1);
+        if (finished_) return 1;
+        if (!builder_) return 0;
+        const double share = is_whole_ ? kCoarseShare + (1 - kCoarseShare) * builder_->share()
+                                       : kCoarseShare * builder_->share();
         return std::min(share, 0.999);
     }
     std::shared_ptr<const Bake> snapshot() const override { return bake_; }
     BakeSections save() const override {
-        if (bake_) return write_paths(bake_->paths);
-        return chooser_ ? write_points(chooser_->state()) : BakeSections{};
+        if (finished_) return write_paths(bake_->paths);
+        // Coarse paths are soon made again.
+        return is_whole_ ? write_points(builder_->points()) : write_points({.spacing = spacing_});
     }
 
  private:
+    void add_steps(std::vector<Step<const BakeInput>>& steps) {
+        const auto add = [&](std::string_view name, const std::function<bool(PathBuilder&)>& step) {
+            steps.push_back({name, [this, step](const BakeInput&) -> Result<StepResult> {
+                                 return step(*builder_) ? StepResult::again : StepResult::done;
+                             }});
+        };
+        add("gathering points", &PathBuilder::choose_points);
+        add("groups", [](PathBuilder& b) { return b.make_groups(), false; });
+        add("larger groups", [](PathBuilder& b) { return b.join_groups(), false; });
+        add("links", &PathBuilder::make_links);
+        add("entry points", [](PathBuilder& b) { return b.make_entries(), false; });
+        add("photon paths", &PathBuilder::make_photons);
+    }
     Result<void> start(const BakeInput& input) {
         LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(input.cut.surfels));
-        chooser_.emplace(*tracer_, spacing_of(input, tracer_->surfels()), input.settings[kGatherRays],
-                         input.settings[kSeed]);
+        spacing_ = spacing_of(input, tracer_->surfels());
+        builder_.emplace(*tracer_,
+                         PathPlan{{kCoarserSpacing * spacing_.least, kCoarserSpacing * spacing_.most},
+                                  kCoarseRays,
+                                  kCoarseEntries,
+                                  input.settings[kSeed]});
         return {};
     }
-    StepResult choose_points(const BakeInput&) {
-        return chooser_->advance() ? StepResult::again : StepResult::done;
-    }
-    StepResult make_groups(const BakeInput&) {
-        const PointChooser::State& state = chooser_->state();
-        builder_.emplace(tracer_->surfels(), state.hits, kLeastCell * state.spacing.least);
-        return StepResult::done;
-    }
-    StepResult join_groups(const BakeInput& input) {
-        const PointChooser::State& state = chooser_->state();
-        const std::span<const uint32_t> leaf_of = builder_->leaf_of();
-        const uint32_t rays = input.settings[kGatherRays];
-        for (size_t i = 0; i < state.hits.size(); ++i)
-            if (state.hits[i].side != kNone)
-                builder_->connect(leaf_of[state.points[i / rays].side], leaf_of[state.hits[i].side]);
-        work_.groups = builder_->join();
-        links_.emplace(*tracer_, *builder_, work_.groups, kLinkReach * state.spacing.most,
-                       input.settings[kSeed]);
-        work_.rays_a_point = rays;
-        for (const RayHit& hit : state.hits) {
-            work_.rays.push_back(hit.side == kNone ? kNone
-                                                   : work_.groups.fitting(leaf_of[hit.side], hit.width));
-            if (work_.rays.back() != kNone) links_->ask(work_.rays.back());
-        }
-        return StepResult::done;
-    }
-    StepResult make_links(const BakeInput&) {
-        return links_->advance() ? StepResult::again : StepResult::done;
-    }
-    StepResult make_entries(const BakeInput& input) {
-        work_.entries = choose_entries(tracer_->surfels(), *builder_, work_.groups.area, links_->used(),
-                                       input.settings[kEntryPoints]);
-        work_.links = links_->take();
-        work_.photons.assign(work_.entries.sides.size() * (kVertices - 1), kNone);
-        return StepResult::done;
-    }
-    StepResult make_photons(const BakeInput& input) {
-        const size_t count = work_.entries.sides.size(), last = std::min(count, next_path_ + kPathsAtOnce);
-        trace_photons(*tracer_, builder_->leaf_of(), work_.entries, next_path_, last, input.settings[kSeed],
-                      std::span(work_.photons).subspan(next_path_ * (kVertices - 1)));
-        next_path_ = last;
-        if (next_path_ < count) return StepResult::again;
-        work_.points = chooser_->state().points;
-        work_.groups.leaf_of.clear();
-        return StepResult::done;
+    void start_whole(const BakeInput& input) {
+        is_whole_ = true;
+        builder_.emplace(*tracer_, PathPlan{spacing_, input.settings[kGatherRays],
+                                            input.settings[kEntryPoints], input.settings[kSeed]});
     }
     /// Makes the snapshot: reads what entry points reflect from the surfels, so that colours and materials
     /// may change without any ray.
@@ -166,11 +140,9 @@ class PathsPrecomputation final : public Precomputation {
     }
 
     std::unique_ptr<tracing::SurfelTracer> tracer_;
-    std::optional<PointChooser> chooser_;
-    std::optional<GroupBuilder> builder_;
-    std::optional<LinkBuilder> links_;
-    size_t next_path_ = 0;
-    LightPaths work_;
+    Spacing spacing_;  ///< asked for
+    std::optional<PathBuilder> builder_;
+    bool is_whole_ = false, is_restored_ = false, finished_ = false;
     std::shared_ptr<const PathsBake> bake_;
 };
 

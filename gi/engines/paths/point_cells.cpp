@@ -5,12 +5,12 @@
 namespace lucarne::gi::paths {
 
 PointCells::PointCells(std::span<const GatheringPoint> points, float factor) {
-    struct Entry {
+    struct Listed {
         uint64_t key;
         uint32_t number;
-        auto operator<=>(const Entry&) const = default;
+        auto operator<=>(const Listed&) const = default;
     };
-    std::vector<Entry> entries;
+    std::vector<Listed> entries;
     for (uint32_t i = 0; i < points.size(); ++i) {
         const float reach = factor * points[i].reach;
         const int grid = PointGrid::grid_of(reach);

@@ -30,7 +30,7 @@ TEST(PathsBake, AnInterruptedOneIsContinuedAsIfItHadNeverBeenStopped) {
     const BakeInput input = small_box();
     const auto whole = kPathsPrecomputes.make();
     finish(*whole, input);
-    for (const int taken : {1, 4, 12}) {
+    for (const int taken : {1, 4, 12, 30}) {
         const auto first = kPathsPrecomputes.make();
         StepRunner<const BakeInput> runner;
         runner.start(first->steps(input));
@@ -43,6 +43,23 @@ TEST(PathsBake, AnInterruptedOneIsContinuedAsIfItHadNeverBeenStopped) {
         finish(*second, input);
         EXPECT_EQ(second->save(), whole->save()) << taken;
     }
+}
+
+TEST(PathsBake, CoarsePathsAreUsableBeforeAllAreMade) {
+    const BakeInput input = small_box();
+    const auto work = kPathsPrecomputes.make();
+    StepRunner<const BakeInput> runner;
+    runner.start(work->steps(input));
+    while (!work->snapshot() && runner.running()) ASSERT_TRUE(runner.run(input, StepBudget::timed(0)));
+    const auto coarse = std::dynamic_pointer_cast<const PathsBake>(work->snapshot());
+    ASSERT_NE(coarse, nullptr);
+    EXPECT_GT(work->share(), 0);
+    EXPECT_LT(work->share(), .1);
+    EXPECT_GT(coarse->paths.points.size(), 6u);
+    ASSERT_TRUE(runner.run(input, StepBudget{}));
+    const auto all = std::dynamic_pointer_cast<const PathsBake>(work->snapshot());
+    EXPECT_GT(all->paths.points.size(), 2 * coarse->paths.points.size());
+    EXPECT_EQ(work->share(), 1);
 }
 
 TEST(PathsBake, ChangedColoursAndMaterialsNeedNoRay) {

@@ -1,0 +1,72 @@
+#include "gi/engines/paths/path_builder.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace lucarne::gi::paths {
+namespace {
+
+/// Of the smallest cells, in R-: between gathering points light is interpolated anyway.
+constexpr float kLeastCell = 1;
+/// Of the cells from all over which links start, in R+: light of further bounces is smooth.
+constexpr float kLinkReach = 0.5f;
+constexpr size_t kPathsAtOnce = 131072;
+/// Shares of the work: gathering points, links; the rest are photons.
+constexpr double kPointsShare = 0.75, kLinksShare = 0.2;
+
+}  // namespace
+
+PathBuilder::PathBuilder(const tracing::SurfelTracer& tracer, const PathPlan& plan)
+    : tracer_(tracer), plan_(plan), chooser_(tracer, plan.spacing, plan.rays, plan.seed) {}
+
+void PathBuilder::make_groups() {
+    groups_.emplace(tracer_.surfels(), chooser_.state().hits, kLeastCell * chooser_.state().spacing.least);
+}
+
+void PathBuilder::join_groups() {
+    const PointChooser::State& state = chooser_.state();
+    const std::span<const uint32_t> leaf_of = groups_->leaf_of();
+    for (size_t i = 0; i < state.hits.size(); ++i)
+        if (state.hits[i].side != kNone)
+            groups_->connect(leaf_of[state.points[i / plan_.rays].side], leaf_of[state.hits[i].side]);
+    paths_.groups = groups_->join();
+    links_.emplace(tracer_, *groups_, paths_.groups, kLinkReach * state.spacing.most, plan_.seed);
+    paths_.rays_a_point = plan_.rays;
+    for (const RayHit& hit : state.hits) {
+        const bool met = hit.side != kNone;
+        paths_.rays.push_back(met ? paths_.groups.fitting(leaf_of[hit.side], hit.width) : kNone);
+        if (met) links_->ask(paths_.rays.back());
+    }
+}
+
+void PathBuilder::make_entries() {
+    paths_.entries =
+        choose_entries(tracer_.surfels(), *groups_, paths_.groups.area, links_->used(), plan_.entries);
+    paths_.links = links_->take();
+    paths_.photons.assign(paths_.entries.sides.size() * (kVertices - 1), kNone);
+}
+
+bool PathBuilder::make_photons() {
+    const size_t count = paths_.entries.sides.size(), last = std::min(count, next_path_ + kPathsAtOnce);
+    trace_photons(tracer_, groups_->leaf_of(), paths_.entries, next_path_, last, plan_.seed,
+                  std::span(paths_.photons).subspan(next_path_ * (kVertices - 1)));
+    next_path_ = last;
+    return next_path_ < count;
+}
+
+LightPaths PathBuilder::take() {
+    paths_.points = chooser_.take().points;
+    paths_.groups.leaf_of.clear();
+    return std::move(paths_);
+}
+
+double PathBuilder::share() const {
+    if (!groups_) return kPointsShare * chooser_.share();
+    const double paths = static_cast<double>(paths_.entries.sides.size());
+    const double traced = paths > 0 ? static_cast<double>(next_path_) / paths : 0;
+    return kPointsShare + kLinksShare * (links_ ? links_->share() : 0) +
+           (1 - kPointsShare - kLinksShare) * traced;
+}
+
+}  // namespace lucarne::gi::paths

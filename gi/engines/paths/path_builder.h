@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "gi/engines/paths/bake.h"
+#include "gi/engines/paths/gathering_points.h"
+#include "gi/engines/paths/groups.h"
+#include "gi/engines/paths/light_paths.h"
+
+namespace lucarne::gi::paths {
+
+/// How fine light paths are to be.
+struct PathPlan {
+    Spacing spacing;
+    uint32_t rays = 0;     ///< of each gathering point
+    uint64_t entries = 0;  ///< entry points
+    uint64_t seed = 0;
+};
+
+/// Makes light paths in parts, to be called in this order. Parts that return whether anything is left are
+/// repeated until nothing is.
+class PathBuilder {
+ public:
+    /// `tracer` must outlive it.
+    PathBuilder(const tracing::SurfelTracer& tracer, const PathPlan& plan);
+
+    bool choose_points() { return chooser_.advance(); }
+    void make_groups();
+    void join_groups();
+    bool make_links() { return links_->advance(); }
+    void make_entries();
+    bool make_photons();
+    LightPaths take();
+
+    /// The finished share, 0..1.
+    double share() const;
+    /// The gathering points so far. The other parts take less time, and are done again if they are
+    /// interrupted.
+    const PointChooser::State& points() const { return chooser_.state(); }
+    bool restore(PointChooser::State state) { return chooser_.restore(std::move(state)); }
+
+ private:
+    const tracing::SurfelTracer& tracer_;
+    PathPlan plan_;
+    PointChooser chooser_;
+    std::optional<GroupBuilder> groups_;
+    std::optional<LinkBuilder> links_;
+    size_t next_path_ = 0;
+    LightPaths paths_;
+};
+
+}  // namespace lucarne::gi::paths
