@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,21 +14,35 @@
 
 namespace lucarne::gi::paths {
 
-/// The light of lamps at entry points, by the lamps' shadow maps: E and V of Yue et al. 2007, eq. 8 and 9.
+/// The light of lamps at entry points, by the lamps' shadow maps: E and V of Yue et al. 2007, eq. 8 and 9. Of
+/// few lamps each is computed by itself and kept, so a moved lamp repeats its own light only.
 class EntryLight {
  public:
-    /// Sends entry points to the device unless it has them. Errors: device memory.
-    Result<void> set_entries(Frame& frame, std::span<const Entry> entries);
+    /// Sends entry points to the device unless it has them. `bake`: the one whose entry points they are.
+    /// Errors: device memory.
+    Result<void> set_entries(Frame& frame, const std::shared_ptr<const PathsBake>& bake);
     /// Returns the irradiance of each entry point by all these views of lights, W/m^2. `any_state`: shadow
     /// maps of an earlier state of their cuts will do. Errors: device memory, a shader that fails.
-    Result<std::vector<glm::vec3>> irradiance(Frame& frame, const std::vector<LightView>& views,
+    Result<std::vector<glm::vec3>> irradiance(Frame& frame, std::span<const LightView> views,
                                               LightGBuffers& gbuffers, bool any_state);
+    /// How many lamps the last call computed; the others had not changed.
+    size_t computed() const { return computed_; }
 
  private:
-    const Entry* entries_ = nullptr;  ///< those on the device
-    size_t count_ = 0;
+    /// What a lamp sends to the entry points.
+    struct Kept {
+        Light light;
+        uint64_t cut = 0;  ///< DeviceCut::fingerprint()
+        std::vector<glm::vec3> irradiance;
+    };
+    Result<std::vector<glm::vec3>> compute(Frame& frame, std::span<const LightView> views,
+                                           LightGBuffers& gbuffers, bool any_state);
+
+    std::shared_ptr<const PathsBake> bake_;  ///< whose entry points are on the device
     glm::vec3 offset_{0.0f};
     Buffer flat_, irradiance_;
+    std::vector<Kept> kept_;
+    size_t computed_ = 0;
 };
 
 }  // namespace lucarne::gi::paths

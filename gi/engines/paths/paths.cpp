@@ -110,12 +110,15 @@ Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& vi
         entering_views.push_back(view);
         basis.lights.push_back(view.light);
     }
+    // In motion nodes arrive all the time, and light of a moment ago will do.
+    if (any_state) basis.cuts = light_of_.cuts;
     if (!irradiance_.empty() && light_of_ == basis) return {};
+    basis.cuts = cuts_;
     irradiance_.clear();
     std::vector<glm::vec3> entering;
     {
         const TimedPass pass(frame, "entry points");
-        LUCARNE_TRY(entry_light_.set_entries(frame, relight_->bake().entries));
+        LUCARNE_TRY(entry_light_.set_entries(frame, relight_->shared_bake()));
         LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, entering_views, light_gbuffers_, any_state));
     }
     if (frame.stopped()) return {};
@@ -198,6 +201,7 @@ std::vector<std::pair<std::string, double>> PathsEngine::stats() const {
             {"entry_points", paths.entries.sides.size()},
             {"leaves", paths.groups.leaves},
             {"groups", paths.groups.count()},
+            {"lamps_computed", entry_light_.computed()},
             {"lonely_pixels", alone_}};
 }
 

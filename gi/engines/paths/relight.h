@@ -23,6 +23,7 @@ class Relight {
  public:
     explicit Relight(std::shared_ptr<const PathsBake> bake) : bake_(std::move(bake)) {}
     const PathsBake& bake() const { return *bake_; }
+    const std::shared_ptr<const PathsBake>& shared_bake() const { return bake_; }
 
     /// Which bounces count: the first and the last one, from 1.
     struct Bounces {

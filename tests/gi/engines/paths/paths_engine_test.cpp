@@ -69,6 +69,13 @@ TEST_F(PathsEngine, AMovedLampGivesThePictureOfAFreshPreparation) {
     EXPECT_EQ(draw().radiance, first.radiance) << "and back";
 }
 
+TEST_F(PathsEngine, ManyLampsGiveThePictureOfAFreshPreparation) {
+    for (int i = 0; i < 9; ++i) options_.lights.push_back(lamp(.4f + .1f * static_cast<float>(i)));
+    draw();
+    options_.lights[3] = lamp(.45f);
+    EXPECT_EQ(draw().radiance, draw_anew().radiance);
+}
+
 TEST_F(PathsEngine, EditedMaterialsGiveThePictureOfAFreshPreparation) {
     const Lit first = draw();
     options_.materials[1] = make_material(.9f, 0, 1, .2f);
@@ -78,8 +85,10 @@ TEST_F(PathsEngine, EditedMaterialsGiveThePictureOfAFreshPreparation) {
 }
 
 TEST_F(PathsEngine, ALampMoreOrLessGivesThePictureOfAFreshPreparation) {
+    draw();
     options_.lights.push_back(lamp(.5f));
     EXPECT_EQ(draw().radiance, draw_anew().radiance);
+    EXPECT_EQ(stat("lamps_computed"), 1) << "the other one has not moved";
     options_.lights.erase(options_.lights.begin());
     EXPECT_EQ(draw().radiance, draw_anew().radiance);
     options_.lights.clear();
