@@ -18,8 +18,11 @@ namespace {
 constexpr uint32_t kLevels = 20;     ///< of the octree: one bit of each coordinate a level
 constexpr size_t kFewestInCell = 4;  ///< surfels; cells with fewer are not divided
 constexpr float kFit = 1.25f;        ///< a cell fits into a ray that is this much narrower
-/// Groups whose planes are farther apart than this share of their cell are different surfaces.
-constexpr float kOnePlane = 0.25f;
+/// Parallel sheets are different surfaces if they are farther apart than so many radii of their discs; where
+/// normals turn, this share of the turn (at most kMostTurn) times the distance along the surface is allowed.
+constexpr float kSheet = 2, kCurved = 0.5f, kMostTurn = 0.5f;
+/// Cells with more surfaces than this are not joined: foliage, for example.
+constexpr size_t kMostParts = 256;
 /// Fewer leaves than this that see each other see nothing else: the inside of walls, and foliage. They are
 /// not joined.
 constexpr uint32_t kFewestOfAir = 16;
@@ -175,11 +178,16 @@ std::vector<uint32_t> GroupBuilder::find_airs() const {
     return airs;
 }
 
-bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other, float cell) {
+/// Whether two groups are parts of one surface. Arcs of a curved one lie symmetrically about their mean
+/// normal, so their centres are in one plane across it, unless their sizes differ; parallel sheets are not.
+bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) {
     if (one.facing != other.facing || one.air != other.air || one.air == kNone) return false;
-    const glm::vec3 normal = one.normal + other.normal;
-    const float apart = std::abs(glm::dot(normal, one.centre - other.centre));
-    return apart <= (kOnePlane * cell + std::max(one.radius, other.radius)) * glm::length(normal);
+    const glm::vec3 first = glm::normalize(one.normal), second = glm::normalize(other.normal);
+    const glm::vec3 mean = glm::normalize(first + second), apart = one.centre - other.centre;
+    const float across = std::abs(glm::dot(mean, apart));
+    const float along = glm::length(apart - mean * glm::dot(mean, apart));
+    const float turn = std::min(glm::length(first - second), kMostTurn);
+    return across <= kSheet * std::max(one.radius, other.radius) + kCurved * turn * along;
 }
 
 Groups GroupBuilder::join() const {
@@ -203,11 +211,12 @@ Groups GroupBuilder::join() const {
             for (uint32_t part = cell.first_part; part < cell.last_part; ++part)
                 for (const uint32_t group : finer[part])
                     if (facts[group].air != kNone) parts.push_back(group);
+            if (parts.size() > kMostParts) parts.clear();
             std::vector<uint32_t> next(parts.size());
             std::iota(next.begin(), next.end(), 0u);
             for (uint32_t i = 0; i < parts.size(); ++i)
                 for (uint32_t j = i + 1; j < parts.size(); ++j)
-                    if (on_one_surface(facts[parts[i]], facts[parts[j]], edge)) {
+                    if (on_one_surface(facts[parts[i]], facts[parts[j]])) {
                         const uint32_t a = root_of(next, i), b = root_of(next, j);
                         next[std::max(a, b)] = std::min(a, b);
                     }

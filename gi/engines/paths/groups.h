@@ -76,7 +76,7 @@ class GroupBuilder {
     void make_leaves(Cell& cell);
     void add_leaf(std::span<const Side> sides, uint32_t facing);
     std::vector<uint32_t> find_airs() const;
-    static bool on_one_surface(const Facts& one, const Facts& other, float cell);
+    static bool on_one_surface(const Facts& one, const Facts& other);
     static void add(Facts& sum, const Facts& more);
 
     std::span<const Surfel> surfels_;

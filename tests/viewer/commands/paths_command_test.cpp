@@ -57,8 +57,7 @@ class PathsCommand : public testing::Test {
 TEST_F(PathsCommand, EditsRepeatOnlyWhatDependsOnThemAndEqualAFreshPreparation) {
     const std::string first = picture("");
     for (const Edit& edit :
-         std::vector<Edit>{{"camera", "--size 40x56", false},
-                           {"points' colours", "--colour elevation", false},
+         std::vector<Edit>{{"points' colours", "--colour elevation", false},
                            {"a clip that casts", "--clip-box 0,0,0,3,3,3 --clip-casts", false},
                            {"a clip", "--clip-box 0,0,0,3,3,3", true},
                            {"number of entry points", "--entry-points 50000", true}}) {
