@@ -39,9 +39,6 @@ class Relight {
     /// Returns the irradiance at each gathering point, W/m^2, by the light of these bounces.
     std::vector<glm::vec3> gather() const;
 
-    /// Radiosity of each group after bounce().
-    std::span<const glm::vec3> radiosity() const { return sum_; }
-
  private:
     std::vector<glm::vec3> light_of_sky(const GatherSky& sky) const;
     void coarsen(std::vector<glm::vec3>& light) const;

@@ -43,7 +43,7 @@ void fine_caches(EngineSettings& settings) {
 }
 void many_rays(EngineSettings& settings) {
     settings.set(paths::kPointSpacing, 60);
-    settings.set(paths::kGatherRays, 512);
+    settings.set(paths::kGatherRays, 256);
     settings.set(paths::kEntryPoints, 100'000);
 }
 void more_rays(EngineSettings& settings) {
