@@ -11,6 +11,7 @@ namespace lucarne::gi {
 /// same shape: the unit vectors to the light, times the mean of the three colours of its irradiance, are
 /// added to it. Errors: a shader that fails.
 Result<void> add_surfel_light(Device& device, const Buffer& surfels, uint32_t count, const LightView& from,
-                              const GBuffer& seen, const Buffer& irradiance, const Buffer* directions);
+                              const GBuffer& seen, const Buffer& irradiance,
+                              const Buffer* directions = nullptr);
 
 }  // namespace lucarne::gi
