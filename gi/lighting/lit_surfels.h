@@ -8,7 +8,7 @@
 #include "gi/lighting/light_gbuffers.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/flat_surfel.h"
-#include "gi/shared/side_light.h"
+#include "gi/surfels/side_light.h"
 
 namespace lucarne::gi {
 

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/shared/flat_surfel.h"
-#include "gi/shared/side_light.h"
+#include "gi/surfels/side_light.h"
 #include "gi/tree/wide_node.h"
 #include "io/core/parallel.h"
 

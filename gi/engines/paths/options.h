@@ -64,8 +64,8 @@ enum class Transport : uint8_t {
 inline constexpr std::array<std::string_view, 2> kTransports = {"links", "photons"};
 inline constexpr Option<Transport> kTransport{{
     .kind = OptionKind::choice,
-    .key = "transport",
-    .label = "transport",
+    .key = "bounce_by",
+    .label = "bounce by",
     .help =
         "links: bounces by rays between groups of surfels; photons: by photon paths, four bounces at most",
     .cost = "photons are what the paper describes; links have less noise",
