@@ -20,6 +20,14 @@ class WindowWithProject : public ManagedWindow {
         ASSERT_TRUE(eventually([&] { return !viewer_->running(); })) << log();
         EXPECT_EQ(viewer_->code(), 0);
     }
+    /// Presses Return until `done` is true: a key that comes before its dialog is open is lost.
+    template <class Done>
+    bool confirmed(const Done& done) {
+        return eventually([&] {
+            xdo("key Return sleep 0.3");
+            return done();
+        });
+    }
     /// The project of the only scan; empty if there is none.
     std::filesystem::path project() const {
         std::error_code none;
@@ -86,8 +94,8 @@ TEST_F(WindowWithProject, IsSavedUnderANameAndFindsScansThatWereMovedWithIt) {
     xdo("key 5");
     const auto above = picture([&](const io::Image8& now) { return difference(now, *home) > 2; });
     ASSERT_TRUE(above) << log();
-    xdo("key ctrl+shift+s sleep 1 key Return");
-    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file); })) << log();
+    xdo("key ctrl+shift+s");
+    ASSERT_TRUE(confirmed([&] { return std::filesystem::exists(file); })) << log();
     xdo("sleep 0.5 key i sleep 0.5");  // a clip box, kept in the same file
     close();
     EXPECT_THAT(bytes_of(file), HasSubstr("\"clip\""));
@@ -119,15 +127,14 @@ TEST_F(WindowWithProject, ExportsThePointsThatItShows) {
     start();
     const auto whole = picture(lit);
     ASSERT_TRUE(whole) << log();
-    xdo("key ctrl+shift+e sleep 1 key Return");
-    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file); })) << log();
+    xdo("key ctrl+shift+e");
+    ASSERT_TRUE(confirmed([&] { return std::filesystem::exists(file); })) << log();
     const auto all = std::filesystem::file_size(file);
     xdo("key i");  // a clip box
     ASSERT_TRUE(picture([&](const io::Image8& now) { return difference(now, *whole) > 2; })) << log();
     xdo("key ctrl+shift+e sleep 1 key Return sleep 1");
     EXPECT_EQ(std::filesystem::file_size(file), all) << "it asks before it replaces a file";
-    xdo("key Return");
-    EXPECT_TRUE(eventually([&] { return std::filesystem::file_size(file) < all; })) << log();
+    EXPECT_TRUE(confirmed([&] { return std::filesystem::file_size(file) < all; })) << log();
     EXPECT_THAT(log(), HasSubstr("exported "));
     close();
 }
@@ -145,8 +152,8 @@ TEST_F(WindowWithProject, OfAnotherWindowIsShownAndLeftAlone) {
     })) << log();
     EXPECT_THAT(log(), HasSubstr("your work on this scan is shown again"));
     const std::string before = bytes_of(file);
-    xdo("sleep 1 key Insert sleep 5 key ctrl+shift+s sleep 1 key Return");
-    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "cornell-project.json"); }))
+    xdo("sleep 1 key Insert sleep 5 key ctrl+shift+s");
+    ASSERT_TRUE(confirmed([&] { return std::filesystem::exists(folder_ / "cornell-project.json"); }))
         << log();
     close();
     EXPECT_EQ(bytes_of(file), before) << "the first window's";
