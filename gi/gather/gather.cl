@@ -343,7 +343,8 @@ float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction
 // `lobe_light` and `lobe_directions`, likewise: what it sends out by specular lobes, if glossy is not 0. `sky` shines
 // where there is nothing; without texels it is dark.
 kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
-                   global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
+                   global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky,
+                   global const GatherPoint* points, global const float* rays, uint sets, uint count,
                    global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
@@ -415,7 +416,8 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
 // product of a vector and a unit normal near the point's is the mean radiance for that normal, W/(sr m^2) (times pi:
 // irradiance). Arguments as above.
 kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
-                  global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky, global const GatherPoint* points, global const float* rays, uint sets, uint count,
+                  global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky,
+                  global const GatherPoint* points, global const float* rays, uint sets, uint count,
                   global const uint* seen, global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;

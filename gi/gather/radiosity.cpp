@@ -153,8 +153,8 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
     for (uint32_t bounce = 0; bounce < settings.bounces; ++bounce) {
         pull_light(scene.tree(), last, slots);
         LUCARNE_TRY(gatherer.set_light(device, slots));
-        const SideLobes lobes = bounce == 0 ? scene.lobes() : SideLobes{};
-        LUCARNE_TRY(gatherer.set_lobes(device, lobes));
+        const SideLobes none;
+        LUCARNE_TRY(gatherer.set_lobes(device, bounce == 0 ? scene.lobes() : none));
         LUCARNE_TRY(gather(Gathered::light_of_surfels, bounce));
         if (stop && *stop) return {};
         parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {

@@ -100,7 +100,8 @@ Result<void> TreeLighting::set_irradiance(std::span<const glm::vec3> irradiance,
 
 Result<void> TreeLighting::set_slots(std::span<const SideLight> slots, bool lobes) {
     LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
-    return gatherer_.set_lobes(*opencl_, lobes ? lit_.lobes() : SideLobes{});
+    const SideLobes none;
+    return gatherer_.set_lobes(*opencl_, lobes ? lit_.lobes() : none);
 }
 
 Result<void> TreeLighting::add_direct(Frame& frame) {

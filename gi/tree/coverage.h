@@ -45,8 +45,8 @@ class Coverage {
     }
     /// The covered points: bit 8 j + i is the point i along the axis after w, and j along the one after that.
     uint64_t covered() const { return covered_; }
-    /// Returns covered() and those points that at least three of the four covered neighbours surround: discs
-    /// that are not even leave gaps of one point in a surface without holes.
+    /// Returns covered() and the points that have at least three covered neighbours out of four: uneven discs
+    /// leave gaps of one point in a surface without holes.
     uint64_t closed() const {
         constexpr uint64_t kFirstColumn = 0x0101010101010101u;
         const uint64_t a = covered_ << 1 & ~kFirstColumn, b = (covered_ & ~kFirstColumn) >> 1;

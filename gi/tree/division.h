@@ -15,7 +15,8 @@ namespace lucarne::gi {
 /// A surfel that the tree holds, as far as its place in the tree depends on it.
 struct PlacedSurfel {
     glm::vec3 position;
-    uint32_t index : 29, side : 3;  ///< its number; the side of a cube to which its normal is nearest
+    uint32_t index;  ///< its number
+    uint32_t side;   ///< of a cube: the one to which its normal is nearest, 0 to 5
 };
 
 struct Range {
