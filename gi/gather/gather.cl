@@ -412,19 +412,22 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
     nearness[number] = cast > 0 ? near / cast : 0.0f;
 }
 
-// For each point: the light that it receives by what its buffer sees, as three vectors, for red, green and blue. The
-// product of a vector and a unit normal near the point's is the mean radiance for that normal, W/(sr m^2) (times pi:
-// irradiance). Arguments as above.
+// For each point: the light that it receives by what its buffer sees, as the ten terms of a LightByNormal (three floats
+// each). At the point's own normal it is the mean over the rays, as gather() has it. What changes with the normal is that
+// of the spherical harmonics up to the second order (Ramamoorthi & Hanrahan 2001, "An efficient representation for
+// irradiance environment maps"): they turn max(c, 0), c the cosine between normal and ray, into 3/32 + c/2 + 15/32 c^2.
+// Arguments as above.
 kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
                   global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky,
                   global const GatherPoint* points, global const float* rays, uint sets, uint count,
-                  global const uint* seen, global float4* results) {
+                  global const uint* seen, global float* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
     GatherPoint point = points[number];
     point.viewer.x = point.viewer.y = point.viewer.z = 0.0f;  // the start of the rays does not matter any more
     Place place = place_of(nodes, point, rays, sets);
-    float3 red = (float3)(0.0f), green = (float3)(0.0f), blue = (float3)(0.0f);
+    float3 sum = (float3)(0.0f), terms[9];
+    for (int k = 0; k < 9; ++k) terms[k] = (float3)(0.0f);
     uint cast = 0;
     for (int j = 0; j < GRID; ++j)
         for (int i = 0; i < GRID; ++i) {
@@ -432,23 +435,35 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
             if (code == kSeesNothing) continue;
             ++cast;
             float3 ray = ray_of(place, j * ROW + i);
-            float3 direction = place.side * ray.x + place.across * ray.y + place.axis * ray.z;
+            float3 d = place.side * ray.x + place.across * ray.y + place.axis * ray.z;
             float3 radiance = (float3)(0.0f);
             if (code != kSeesSky) {
                 if (lit) radiance = vload3(code, light);
-                if (glossy) radiance += specular(lobe_light, lobe_directions, code, -direction);
+                if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d);
             } else if (sky.width > 0) {
-                radiance = sky_radiance(sky_texels, sky, direction);
+                radiance = sky_radiance(sky_texels, sky, d);
             }
-            // Rays are drawn by the cosine. The part along the surface would grow beyond bounds at the horizon, so it
-            // stays as it is there from the last six degrees on.
-            float3 part = place.axis + (direction - ray.z * place.axis) / fmax(ray.z, 0.1f);
-            red += radiance.x * part;
-            green += radiance.y * part;
-            blue += radiance.z * part;
+            sum += radiance;
+            // Rays are drawn by the cosine, so each stands for as much solid angle as 1 over its cosine; within the
+            // last six degrees above the horizon that would be beyond bounds, and stays as it is there.
+            float3 weighted = radiance / fmax(ray.z, 0.1f);
+            float3 linear = 0.5f * weighted, squares = 0.46875f * weighted;
+            terms[0] += linear * d.x;
+            terms[1] += linear * d.y;
+            terms[2] += linear * d.z;
+            terms[3] += squares * (d.x * d.x);
+            terms[4] += squares * (d.y * d.y);
+            terms[5] += squares * (d.z * d.z);
+            terms[6] += squares * (2.0f * d.x * d.y);
+            terms[7] += squares * (2.0f * d.y * d.z);
+            terms[8] += squares * (2.0f * d.z * d.x);
         }
     float share = cast > 0 ? 1.0f / cast : 0.0f;
-    results[3 * number] = (float4)(red * share, 0.0f);
-    results[3 * number + 1] = (float4)(green * share, 0.0f);
-    results[3 * number + 2] = (float4)(blue * share, 0.0f);
+    float3 n = place.axis;
+    float powers[9] = {n.x, n.y, n.z, n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.y * n.z, n.z * n.x};
+    for (int k = 0; k < 9; ++k) {
+        sum -= powers[k] * terms[k];
+        vstore3(terms[k] * share, 10 * number + k + 1, results);
+    }
+    vstore3(sum * share, 10 * number, results);
 }

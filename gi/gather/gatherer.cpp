@@ -172,14 +172,14 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
     return {};
 }
 
-Result<std::vector<LightVectors>> Gatherer::shade(ClDevice& device, Gathered what,
-                                                  const MicroBuffers& buffers) {
-    std::vector<LightVectors> result(buffers.count());
+Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered what,
+                                                   const MicroBuffers& buffers) {
+    std::vector<LightByNormal> result(buffers.count());
     if (result.empty()) return result;
     const auto [lit, glossy, sky] = asked(what);
     LUCARNE_TRY(make_rays(device, buffers.grid_, buffers.seed_));
     LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "shade", defines_for(buffers.grid_)));
-    LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightVectors), "gathered light"));
+    LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightByNormal), "gathered light"));
     const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
     LUCARNE_TRY(kernel->run(ClRange(result.size(), launch.group), nodes_, lit ? light_ : nodes_, lit,
                             glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,

@@ -14,6 +14,7 @@
 #include "gi/device/cl/cl_device.h"
 #include "gi/gather/gather_point.h"
 #include "gi/gather/gather_sky.h"
+#include "gi/gather/light_by_normal.h"
 #include "gi/gather/sky_picture.h"
 #include "gi/tree/surfel_tree.h"
 
@@ -21,17 +22,6 @@ namespace lucarne::gi {
 
 /// Which light points gather.
 enum class Gathered : uint8_t { light_of_surfels, sky, both };
-
-/// Light that a point receives, for normals near its own: the product of a vector and a unit normal is the
-/// mean radiance, W/(sr m^2) (times pi: irradiance).
-struct LightVectors {
-    glm::vec4 red, green, blue;  ///< w is unused
-    glm::vec3 on(const glm::vec3& normal) const {
-        return glm::max(glm::vec3(glm::dot(glm::vec3(red), normal), glm::dot(glm::vec3(green), normal),
-                                  glm::dot(glm::vec3(blue), normal)),
-                        0.0f);
-    }
-};
 
 /// Micro-buffers that stay on an OpenCL device, to be lit as often as the light changes.
 class MicroBuffers {
@@ -79,7 +69,7 @@ class Gatherer {
                      MicroBuffers& buffers, const std::atomic<bool>* stop = nullptr);
     /// Computes the light that reaches the points of `buffers`, which see() has drawn. Errors: the device
     /// failed.
-    Result<std::vector<LightVectors>> shade(ClDevice& device, Gathered what, const MicroBuffers& buffers);
+    Result<std::vector<LightByNormal>> shade(ClDevice& device, Gathered what, const MicroBuffers& buffers);
 
  private:
     struct Asked {

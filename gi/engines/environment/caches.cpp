@@ -12,8 +12,8 @@ namespace {
 
 constexpr uint32_t kTileSide = 16;
 constexpr size_t kPixelsAPiece = 4096, kCachesAPiece = 256;
-/// Caches whose normals differ by more than about 37 degrees do not count.
-constexpr float kLeastAgreement = 0.8f;
+/// Caches whose normals differ by more than about 26 degrees do not count.
+constexpr float kLeastAgreement = 0.9f;
 /// Offsets across a surface count as so many times those along it.
 constexpr float kAcross = 4;
 /// A cache is in front of a pixel's plane beyond this share of its reach.
@@ -80,29 +80,28 @@ CacheTiles::Range CacheTiles::range_of(const CameraView& camera, const Cache& ca
             tile(place.y - radius, rows_), std::min(tile(place.y + radius, rows_) + 1, rows_)};
 }
 
-std::optional<LightVectors> CacheTiles::light_at(const SurfacePoint& at, const glm::vec2& pixel) const {
+std::optional<LightByNormal> CacheTiles::light_at(const SurfacePoint& at, const glm::vec2& pixel) const {
     const auto tile = [](float place, uint32_t count) {
         return static_cast<size_t>(std::clamp(place / kTileSide, 0.0f, static_cast<float>(count - 1)));
     };
     const size_t number = tile(pixel.y, rows_) * columns_ + tile(pixel.x, columns_);
-    LightVectors sum{};
+    LightByNormal sum{};
     float weights = 0;
     for (size_t i = starts_[number]; i < starts_[number + 1]; ++i) {
         const Cache& cache = caches_[numbers_[i]];
         const float weight = weight_of(cache, at);
         if (!(weight > 0)) continue;
-        sum.red += weight * cache.light.red;
-        sum.green += weight * cache.light.green;
-        sum.blue += weight * cache.light.blue;
+        sum.add(cache.light, weight);
         weights += weight;
     }
     if (!(weights > kLeastSum)) return std::nullopt;
-    return LightVectors{sum.red / weights, sum.green / weights, sum.blue / weights};
+    sum.scale(1 / weights);
+    return sum;
 }
 
 void smooth(const CameraView& camera, std::span<Cache> caches) {
     const CacheTiles tiles(camera, caches);
-    std::vector<LightVectors> light(caches.size());
+    std::vector<LightByNormal> light(caches.size());
     parallel_ranges(caches.size(), kCachesAPiece, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const Cache& cache = caches[i];

@@ -17,7 +17,7 @@ namespace lucarne::gi::environment {
 struct Cache {
     glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
     float reach = 0;  ///< m; pixels farther away do not use it
-    LightVectors light{};
+    LightByNormal light{};
 };
 
 /// Caches by the tiles of the picture in which they may count.
@@ -30,7 +30,7 @@ class CacheTiles {
     /// counts by how near it is and how much its normal agrees (Ward et al. 1988, with the smooth weights of
     /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. `pixel`: where
     /// it is seen if nothing hides it; the nearest place in the picture counts. Nothing if no cache counts.
-    std::optional<LightVectors> light_at(const SurfacePoint& at, const glm::vec2& pixel) const;
+    std::optional<LightByNormal> light_at(const SurfacePoint& at, const glm::vec2& pixel) const;
 
  private:
     struct Range {

@@ -147,6 +147,30 @@ TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
     for (const float near : *nearness) EXPECT_GT(near, 1 / 1.75f);
 }
 
+// A half space of even light gives (1 + cos t) / 2 to a normal that is turned by t, not cos t, because what
+// lies behind the turned plane counts as nothing, not as less than nothing.
+TEST_F(GathererTest, LightForTurnedNormalsCountsNothingFromBehind) {
+    Gatherer gatherer;
+    ASSERT_TRUE(gatherer.set_tree(*opencl_, {}));
+    ASSERT_TRUE(gatherer.set_sky(*opencl_, {.width = 8, .height = 4, .texels{32, glm::vec3(1.0f)}}));
+    const std::vector<GatherPoint> points = floor_points(1, 0.01f, 64);
+    MicroBuffers buffers;
+    ASSERT_TRUE(gatherer.see(*opencl_, points, 24, 1, buffers));
+    const auto shaded = gatherer.shade(*opencl_, Gathered::sky, buffers);
+    ASSERT_TRUE(shaded) << shaded.error().line();
+    for (const double degrees : {0.0, 10.0, 20.0, 30.0}) {
+        const double angle = glm::radians(degrees);
+        double mean = 0;
+        for (size_t i = 0; i < points.size(); ++i) {
+            const double around = 0.1 * static_cast<double>(i);
+            const glm::dvec3 normal(std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around),
+                                    std::cos(angle));
+            mean += shaded->at(i).on(glm::vec3(normal)).y / static_cast<double>(points.size());
+        }
+        EXPECT_NEAR(mean, (1 + std::cos(angle)) / 2, 0.01) << degrees;
+    }
+}
+
 TEST_F(GathererTest, EmptyTreeSendsNothing) {
     const auto results = gather({}, {}, floor_points(1, 0.01f, 3));
     for (const glm::vec4& r : results) EXPECT_EQ(r, glm::vec4(0, 0, 0, 1));

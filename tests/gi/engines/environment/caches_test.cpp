@@ -9,13 +9,12 @@
 namespace lucarne::gi::environment {
 namespace {
 
-LightVectors even_light(float radiance, const glm::vec3& normal) {
-    const glm::vec4 vector(radiance * normal, 0);
-    return {vector, vector, vector};
+LightByNormal even_light(float radiance) {
+    return {{glm::vec3(radiance)}};
 }
 
 Cache cache_at(const glm::vec3& position, float radiance, float reach = 0.5f) {
-    return {position, {0, 0, 1}, reach, even_light(radiance, {0, 0, 1})};
+    return {position, {0, 0, 1}, reach, even_light(radiance)};
 }
 
 SurfacePoint point_at(const glm::vec3& position, const glm::vec3& normal = {0, 0, 1}) {
@@ -79,7 +78,7 @@ TEST(Caches, SmoothingKeepsEvenLightAndEvensNoise) {
 
 TEST(Caches, LightFollowsTheNormal) {
     std::vector<Cache> caches = {cache_at({0, 0, 0}, 1)};
-    caches[0].light = even_light(1, glm::normalize(glm::vec3(0.3f, 0, 1)));
+    caches[0].light.terms = {glm::vec3(0.0f), glm::vec3(0.3f), glm::vec3(0.0f), glm::vec3(1.0f)};
     const float toward = light_at(caches, point_at({0, 0, 0}, glm::normalize(glm::vec3(0.2f, 0, 1))))->x;
     const float away = light_at(caches, point_at({0, 0, 0}, glm::normalize(glm::vec3(-0.2f, 0, 1))))->x;
     EXPECT_GT(toward, 1.05f * away);
