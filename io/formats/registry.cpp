@@ -11,6 +11,7 @@
 #include "io/formats/common/text.h"
 #include "io/formats/copc/copc.h"
 #include "io/formats/las/extras.h"
+#include "io/formats/load_mesh.h"
 
 namespace lucarne::io {
 namespace {
@@ -48,6 +49,29 @@ Foreign foreign_format(std::string_view head, uint64_t file_bytes) {
     return {};
 }
 
+/// What a file's first bytes and its name say of its format.
+struct Candidates {
+    const Format *told = nullptr, *named = nullptr;  ///< by the content; by the extension
+    std::string head;
+    /// Any text may be rows of numbers, whatever its name says.
+    bool rows() const { return told && told->open == text_format().open; }
+};
+Result<Candidates> candidates_for(const ByteSource& file) {
+    const std::filesystem::path& path = file.path();
+    if (file.size() == 0) return rejected(path.string(), "is empty");
+    std::array<std::byte, kHeadBytes> bytes{};
+    LUCARNE_ASSIGN(const size_t got, file.read_some(0, bytes));
+    Candidates found{.head = std::string(reinterpret_cast<const char*>(bytes.data()), got)};
+    if (found.head.starts_with("\xff\xfe") || found.head.starts_with("\xfe\xff"))
+        return rejected(path.string(), "is UTF-16 text", "save it as UTF-8");
+    const std::string extension = lower_extension(path);
+    for (const Format* format : formats()) {
+        if (!found.told && format->recognises(found.head)) found.told = format;
+        if (!found.named && format->extension == extension) found.named = format;
+    }
+    return found;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
@@ -59,35 +83,33 @@ Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path
 Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file,
                                                const ReadOptions& options) {
     const std::filesystem::path& path = file->path();
-    if (file->size() == 0) return rejected(path.string(), "is empty");
-    std::array<std::byte, kHeadBytes> bytes{};
-    LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));
-    const std::string_view head(reinterpret_cast<const char*>(bytes.data()), got);
-    if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff"))
-        return rejected(path.string(), "is UTF-16 text", "save it as UTF-8");
-    const Format *told = nullptr, *named = nullptr;
-    const std::string extension = lower_extension(path);
-    for (const Format* format : formats()) {
-        if (!told && format->recognises(head)) told = format;
-        if (!named && format->extension == extension) named = format;
-    }
-    // Any text may be rows of numbers. If its name belongs to another format, it counts as that format,
-    // unless the user has described the columns.
-    const bool rows = told && told->open == text_format().open;
+    LUCARNE_ASSIGN(const Candidates found, candidates_for(*file));
+    const auto& [told, named, head] = found;
+    // Rows whose name belongs to another format count as that format, unless the user has described the
+    // columns.
+    const bool rows = found.rows();
     const Foreign foreign = told && !rows ? Foreign{} : foreign_format(head, file->size());
     if (!foreign.what.empty())
         return rejected(path.string(), fmt::format("is {}, which cannot be read", foreign.what),
                         std::string(foreign.todo));
     if (named && (!told || (rows && options.columns.empty() && named->open != told->open))) {
         auto scan = named->by_name ? named->open(file, options)
-                                   : rejected(path.string(),
-                                              fmt::format("is named {} and has no such header", extension));
+                                   : rejected(path.string(), fmt::format("is named {} and has no such header",
+                                                                         named->extension));
         if (!scan && rows && scan.error().todo.empty())
             scan.error().todo = "if it holds rows of numbers, say what they are with --columns";
         return scan;
     }
     if (told) return told->open(file, options);
     return rejected(path.string(), "has an unrecognised format", "convert it to LAS or PLY");
+}
+
+Result<mesh::Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+    LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
+    LUCARNE_ASSIGN(const Candidates found, candidates_for(*file));
+    const Format* format = found.told && !(found.rows() && found.named) ? found.told : found.named;
+    if (!format || !format->load_mesh) return mesh::Mesh{};
+    return format->load_mesh(std::move(file), options);
 }
 
 std::string_view first_statement(std::string_view head) {

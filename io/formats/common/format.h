@@ -11,6 +11,10 @@
 
 namespace lucarne::io {
 
+namespace mesh {
+struct Mesh;
+}
+
 inline constexpr size_t kHeadBytes = 4096;  ///< the first bytes of a file, which tell its format
 
 /// One scan file format. To add a format, write a file that exports such a function, and a line in
@@ -27,6 +31,9 @@ struct Format {
                                                    const ScanInfo& info, const WriteOptions& options);
     /// The files may begin with anything, so the extension is enough if no other format is recognised.
     bool by_name = false;
+    /// Reads the triangles of a file, finished (mesh::Mesh::finish()); null if the format has none.
+    Result<mesh::Mesh> (*load_mesh)(std::shared_ptr<const ByteSource> file,
+                                    const ReadOptions& options) = nullptr;
 };
 
 const Format& las_format();

@@ -327,6 +327,13 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const ByteSource> 
     return sampled(std::move(mesh), std::move(info), parser.state(), options);
 }
 
+Result<Mesh> load_obj(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
+    ObjParser parser(file, options.salvage);
+    LUCARNE_TRY(parser.parse());
+    parser.mesh().finish();
+    return std::move(parser.mesh());
+}
+
 /// Returns whether the first statement of the text is one of OBJ's, and not a header of rows ("v x y z").
 bool is_obj(std::string_view head) {
     auto line = first_statement(head);
@@ -339,7 +346,7 @@ bool is_obj(std::string_view head) {
 }  // namespace
 
 const Format& obj_format() {
-    static constexpr Format kFormat{"OBJ", ".obj", is_obj, open_obj, nullptr, true};
+    static constexpr Format kFormat{"OBJ", ".obj", is_obj, open_obj, nullptr, true, load_obj};
     return kFormat;
 }
 

@@ -274,4 +274,11 @@ Result<Faces> open_mesh(const std::shared_ptr<const ByteSource>& file, const Hea
     return faces;
 }
 
+Result<mesh::Mesh> load_mesh(const std::shared_ptr<const ByteSource>& file, const Header& header,
+                             uint32_t color_bits, bool salvage) {
+    MeshLoader loader(file, header, color_white(color_bits), salvage);
+    LUCARNE_TRY(loader.load());
+    return std::move(loader.mesh());
+}
+
 }  // namespace lucarne::io::ply

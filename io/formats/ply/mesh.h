@@ -1,5 +1,6 @@
 #pragma once
 
+#include "io/formats/mesh/mesh.h"
 #include "io/formats/ply/header.h"
 #include "io/formats/scan.h"
 
@@ -18,5 +19,9 @@ struct Faces {
 /// `options.salvage` reads the complete faces.
 Result<Faces> open_mesh(const std::shared_ptr<const ByteSource>& file, const Header& header, ScanInfo info,
                         const ReadOptions& options);
+
+/// Returns the triangles of the file, finished. `color_bits` is that of its vertices' colours (ScanInfo).
+Result<mesh::Mesh> load_mesh(const std::shared_ptr<const ByteSource>& file, const Header& header,
+                             uint32_t color_bits, bool salvage);
 
 }  // namespace lucarne::io::ply

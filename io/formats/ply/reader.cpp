@@ -302,6 +302,17 @@ Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> 
     return vertices;
 }
 
+/// Returns the triangles of a file; none if it has only vertices or splats.
+Result<mesh::Mesh> load_ply(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
+    LUCARNE_ASSIGN(auto header, ply::read_header(file, options.salvage));
+    if (ply::has_packed_splats(header) || ply::has_splats(header) || !ply::has_faces(header))
+        return mesh::Mesh{};
+    LUCARNE_TRY(ply::fit_body(*file, header, options.salvage));
+    PlySource vertices(file, header, options.salvage, true);
+    LUCARNE_TRY(vertices.describe(options));
+    return ply::load_mesh(file, header, vertices.info().color_bits, options.salvage);
+}
+
 bool is_ply(std::string_view head) {
     head = without_mark(head);
     return head.size() > 3 && same_letters(head.substr(0, 3), "ply") &&
@@ -311,7 +322,7 @@ bool is_ply(std::string_view head) {
 }  // namespace
 
 const Format& ply_format() {
-    static constexpr Format kFormat{"PLY", ".ply", is_ply, open_ply, ply::create};
+    static constexpr Format kFormat{"PLY", ".ply", is_ply, open_ply, ply::create, false, load_ply};
     return kFormat;
 }
 
