@@ -40,27 +40,78 @@ void clear_errors() {
     }
 }
 
-/// Compiles and links a program and returns its name. Errors carry the compiler's first message.
-Result<GLuint> compile(std::string_view path, const ShaderSource& source) {
-    const char* text = source.text.c_str();
-    const GLuint id = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
-    GLint linked = GL_FALSE;
-    if (id) glGetProgramiv(id, GL_LINK_STATUS, &linked);
-    if (linked) return id;
+/// The stage that a shader's name tells.
+GLenum stage_of(std::string_view path) {
+    if (path.ends_with(".vert")) return GL_VERTEX_SHADER;
+    if (path.ends_with(".geom")) return GL_GEOMETRY_SHADER;
+    return path.ends_with(".frag") ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER;
+}
+
+/// The shaders of a program, with their includes.
+struct ProgramSource {
+    std::vector<std::string> paths;
+    std::vector<ShaderSource> stages;
+
+    static Result<ProgramSource> of(const std::vector<std::string>& paths, const Defines& defines,
+                                    const std::vector<ShaderText>& texts) {
+        ProgramSource source{paths, {}};
+        for (const std::string& path : paths) {
+            LUCARNE_ASSIGN(ShaderSource stage, shader_source(path, defines, texts));
+            source.stages.push_back(std::move(stage));
+        }
+        return source;
+    }
+    std::string text() const {
+        std::string all;
+        for (const ShaderSource& stage : stages) all += stage.text;
+        return all;
+    }
+};
+
+template <class Get, class GetLog>
+std::string info_log(GLuint id, const Get& get, const GetLog& get_log) {
     GLint length = 0;
-    if (id) glGetProgramiv(id, GL_INFO_LOG_LENGTH, &length);
+    get(id, GL_INFO_LOG_LENGTH, &length);
     std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
-    if (length > 0) glGetProgramInfoLog(id, length, &length, log.data());
+    if (length > 0) get_log(id, length, &length, log.data());
     log.resize(static_cast<size_t>(std::max(length, 0)));
+    return log;
+}
+
+/// Compiles and links a program and returns its name. Errors carry the compiler's first message.
+Result<GLuint> compile(const ProgramSource& source) {
+    const auto wrong = [](const std::string& path, const std::string& log, const ShaderSource& stage) {
+        return failed("shader " + path, readable_message(log, stage.files),
+                      "the driver is " + gl_string(GL_VERSION));
+    };
+    const GLuint id = glCreateProgram();
+    for (size_t i = 0; i < source.stages.size(); ++i) {
+        const GLuint shader = glCreateShader(stage_of(source.paths[i]));
+        const char* text = source.stages[i].text.c_str();
+        glShaderSource(shader, 1, &text, nullptr);
+        glCompileShader(shader);
+        GLint compiled = GL_FALSE;
+        glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+        const std::string log = compiled ? "" : info_log(shader, glGetShaderiv, glGetShaderInfoLog);
+        glAttachShader(id, shader);
+        glDeleteShader(shader);  // when the program lets it go
+        if (compiled) continue;
+        glDeleteProgram(id);
+        return wrong(source.paths[i], log, source.stages[i]);
+    }
+    glLinkProgram(id);
+    GLint linked = GL_FALSE;
+    glGetProgramiv(id, GL_LINK_STATUS, &linked);
+    if (linked) return id;
+    const std::string log = info_log(id, glGetProgramiv, glGetProgramInfoLog);
     glDeleteProgram(id);
-    return failed("shader " + std::string(path), readable_message(log, source.files),
-                  "the driver is " + gl_string(GL_VERSION));
+    return wrong(source.paths.front(), log, source.stages.front());
 }
 
 /// A program and the source it was compiled from.
 struct CompiledProgram {
     std::string text;
-    std::unique_ptr<Program> program;
+    std::unique_ptr<ProgramUniforms> program;
 };
 
 }  // namespace
@@ -70,7 +121,7 @@ struct Device::State {
     DeviceInfo info;
     MemoryBudget memory;
     bool native_passes = false;
-    std::map<std::tuple<std::string, Defines>, CompiledProgram> programs;
+    std::map<std::tuple<std::vector<std::string>, Defines>, CompiledProgram> programs;  ///< by paths
     ShaderFiles shaders;
     std::string mistake;
     ContextWatch watch;
@@ -191,6 +242,13 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
     return made;
 }
 
+Result<void> Device::take_memory(uint64_t bytes, std::string_view what) {
+    return state_->memory.take(bytes, what);
+}
+void Device::give_back_memory(uint64_t bytes) {
+    state_->memory.give_back(bytes);
+}
+
 Result<void> Device::reserve(Buffer& target, size_t bytes, std::string_view what) {
     if (target && target.bytes() >= bytes) return {};
     target = Buffer();  // free the old buffer first, so that both never count together
@@ -206,15 +264,20 @@ Result<ClDevice*> Device::opencl() {
     return state.opencl.get();
 }
 
-Result<const Program*> Device::program(std::string_view path, const Defines& defines) {
-    std::tuple<std::string, Defines> key(path, defines);
+std::unique_ptr<ProgramUniforms> Device::wrapped(const std::vector<std::string>& paths,
+                                                 const std::string& text, uint32_t id) {
+    if (paths.size() == 1) return std::unique_ptr<Program>(new Program(*this, paths.front(), text, id));
+    return std::unique_ptr<RasterProgram>(new RasterProgram(*this, paths.front(), text, id));
+}
+
+Result<const ProgramUniforms*> Device::compiled(std::vector<std::string> paths, const Defines& defines) {
+    std::tuple<std::vector<std::string>, Defines> key(std::move(paths), defines);
     if (const auto found = state_->programs.find(key); found != state_->programs.end())
         return found->second.program.get();
     const auto make = [&](const std::vector<ShaderText>& texts) -> Result<CompiledProgram> {
-        LUCARNE_ASSIGN(ShaderSource source, shader_source(path, defines, texts));
-        LUCARNE_ASSIGN(const GLuint id, compile(path, source));
-        const std::string text = std::move(source.text);
-        return CompiledProgram{text, std::unique_ptr<Program>(new Program(*this, path, text, id))};
+        LUCARNE_ASSIGN(const auto source, ProgramSource::of(std::get<0>(key), defines, texts));
+        LUCARNE_ASSIGN(const GLuint id, compile(source));
+        return CompiledProgram{source.text(), wrapped(std::get<0>(key), source.text(), id)};
     };
     auto made = make(state_->shaders.texts());
     if (!made && state_->shaders.from_folder()) {
@@ -223,6 +286,19 @@ Result<const Program*> Device::program(std::string_view path, const Defines& def
     }
     if (!made) return tl::make_unexpected(std::move(made).error());
     return state_->programs.emplace(std::move(key), std::move(*made)).first->second.program.get();
+}
+
+Result<const Program*> Device::program(std::string_view path, const Defines& defines) {
+    LUCARNE_ASSIGN(const ProgramUniforms* found, compiled({std::string(path)}, defines));
+    return static_cast<const Program*>(found);
+}
+
+Result<const RasterProgram*> Device::raster_program(const RasterShaders& shaders, const Defines& defines) {
+    LUCARNE_ASSIGN(
+        const ProgramUniforms* found,
+        compiled({std::string(shaders.vertex), std::string(shaders.geometry), std::string(shaders.fragment)},
+                 defines));
+    return static_cast<const RasterProgram*>(found);
 }
 
 void Device::add_shader(std::string path, std::string text) {
@@ -238,18 +314,17 @@ void Device::use_shader_folder(const std::filesystem::path& folder) {
 void Device::reload_shaders() {
     if (!state_->shaders.from_folder()) return;
     state_->shaders.read_again();
-    for (auto& [key, compiled] : state_->programs) {
-        const auto& [path, defines] = key;
-        auto source = shader_source(path, defines, state_->shaders.texts());
-        if (source && source->text == compiled.text) continue;
-        const Result<GLuint> id =
-            source ? compile(path, *source) : tl::make_unexpected(std::move(source).error());
+    for (auto& [key, program] : state_->programs) {
+        const auto& [paths, defines] = key;
+        auto source = ProgramSource::of(paths, defines, state_->shaders.texts());
+        if (source && source->text() == program.text) continue;
+        const Result<GLuint> id = source ? compile(*source) : tl::make_unexpected(std::move(source).error());
         if (!id) {
             state_->shaders.note_problem(id.error());
             continue;
         }
-        compiled.text = std::move(source->text);
-        compiled.program.reset(new Program(*this, path, compiled.text, *id));
+        program.text = source->text();
+        program.program = wrapped(paths, program.text, *id);
     }
     if (state_->opencl) state_->opencl->reload_programs();
 }

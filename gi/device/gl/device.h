@@ -4,9 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "gi/device/common/shader_source.h"
+#include "gi/device/gl/program.h"
 #include "io/core/error.h"
 
 namespace lucarne::gi {
@@ -95,48 +94,9 @@ class Buffer {
     mutable std::array<uint32_t, 4> textures_{};  ///< one a view, made when first bound
 };
 
-/// Returns the names of the uniforms that a shader's text declares, used or not.
-std::set<std::string, std::less<>> declared_uniforms(std::string_view text);
-
-/// A compiled compute program. The cache of its Device owns it.
-class Program {
- public:
-    ~Program();
-    Program(const Program&) = delete;
-    Program& operator=(const Program&) = delete;
-    void set(std::string_view uniform, int32_t value) const;
-    void set(std::string_view uniform, uint32_t value) const;
-    void set(std::string_view uniform, float value) const;
-    void set_block(std::string_view uniform,
-                   std::span<const float> values) const;  ///< arrays of float or vec, flattened
-    /// Dispatches enough workgroups for x * y * z invocations, then issues a barrier for all kinds of reads.
-    void dispatch(uint32_t x, uint32_t y = 1, uint32_t z = 1) const;
-    /// Dispatches as many groups as the three words at `offset` bytes of `groups` say, which the device
-    /// wrote.
-    void dispatch_indirect(const Buffer& groups, size_t offset = 0) const;
-
- private:
-    friend class Device;
-    struct Uniform {
-        int32_t location;
-        uint32_t type;
-    };
-    /// `text` is the source that it was compiled from.
-    Program(Device& device, std::string_view path, std::string_view text, uint32_t id);
-    /// Returns null for uniforms that the compiler removed as unused; setting those is no error. Setting a
-    /// uniform that the text does not declare is an error, which Device::check() reports.
-    const Uniform* find(std::string_view uniform) const;
-
-    Device* device_;
-    std::string path_;
-    uint32_t id_;
-    std::set<std::string, std::less<>> declared_;
-    uint32_t local_[3] = {1, 1, 1};
-    std::map<std::string, Uniform, std::less<>> uniforms_;
-};
-
-/// One OpenGL 4.5 core context and everything made in it. Use it from one thread. Whatever a program reads
-/// or writes is a shader storage buffer, pictures included.
+/// One OpenGL 4.5 core context and everything made in it. Use it from one thread. Whatever a compute program
+/// reads or writes is a shader storage buffer, pictures included; raster programs draw into layered targets
+/// (layered_target.h).
 class Device {
  public:
     /// Creates an EGL surfaceless context: no X server, no window.
@@ -175,6 +135,10 @@ class Device {
     /// the compiler's first message.
     Result<const Program*> program(std::string_view path, const Defines& defines = {});
 
+    /// The same for a program that rasterizes. `shaders` are a vertex, a geometry and a fragment shader, of
+    /// the defines all three.
+    Result<const RasterProgram*> raster_program(const RasterShaders& shaders, const Defines& defines = {});
+
     /// Returns the OpenCL device (gi/device/cl/cl_device.h) that all engines share. The first call starts it,
     /// which takes most of a second; it is destroyed with this device, after everything made on it. Errors:
     /// there is none, or none of the name in LUCARNE_CL_DEVICE.
@@ -209,10 +173,17 @@ class Device {
 
  private:
     Device();
+    /// Counts memory of other things than buffers. Errors: over the cap.
+    Result<void> take_memory(uint64_t bytes, std::string_view what);
+    void give_back_memory(uint64_t bytes);
     Result<Buffer> make(size_t bytes, uint64_t most, std::string_view what);
+    std::unique_ptr<ProgramUniforms> wrapped(const std::vector<std::string>& paths, const std::string& text,
+                                             uint32_t id);
+    Result<const ProgramUniforms*> compiled(std::vector<std::string> paths, const Defines& defines);
     void note_unknown_uniform(std::string_view path, std::string_view uniform);
     friend class Buffer;
-    friend class Program;
+    friend class LayeredTarget;
+    friend class ProgramUniforms;
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -50,11 +50,8 @@ std::set<std::string, std::less<>> declared_uniforms(std::string_view text) {
     return names;
 }
 
-Program::Program(Device& device, std::string_view path, std::string_view text, uint32_t id)
+ProgramUniforms::ProgramUniforms(Device& device, std::string_view path, std::string_view text, uint32_t id)
     : device_(&device), path_(path), id_(id), declared_(declared_uniforms(text)) {
-    GLint local[3] = {1, 1, 1};
-    glGetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, local);
-    for (int i = 0; i < 3; ++i) local_[i] = static_cast<uint32_t>(local[i]);
     GLint uniforms = 0, longest = 0;
     glGetProgramiv(id_, GL_ACTIVE_UNIFORMS, &uniforms);
     glGetProgramiv(id_, GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
@@ -72,11 +69,11 @@ Program::Program(Device& device, std::string_view path, std::string_view text, u
     }
 }
 
-Program::~Program() {
+ProgramUniforms::~ProgramUniforms() {
     glDeleteProgram(id_);
 }
 
-const Program::Uniform* Program::find(std::string_view uniform) const {
+const ProgramUniforms::Uniform* ProgramUniforms::find(std::string_view uniform) const {
     const auto found = uniforms_.find(uniform);
     if (found != uniforms_.end()) return &found->second;
     const auto name = uniform.substr(0, uniform.find_first_of(".["));
@@ -84,17 +81,17 @@ const Program::Uniform* Program::find(std::string_view uniform) const {
     return nullptr;
 }
 
-void Program::set(std::string_view uniform, int32_t value) const {
+void ProgramUniforms::set(std::string_view uniform, int32_t value) const {
     if (const auto* u = find(uniform)) glProgramUniform1i(id_, u->location, value);
 }
-void Program::set(std::string_view uniform, uint32_t value) const {
+void ProgramUniforms::set(std::string_view uniform, uint32_t value) const {
     if (const auto* u = find(uniform)) glProgramUniform1ui(id_, u->location, value);
 }
-void Program::set(std::string_view uniform, float value) const {
+void ProgramUniforms::set(std::string_view uniform, float value) const {
     if (const auto* u = find(uniform)) glProgramUniform1f(id_, u->location, value);
 }
 
-void Program::set_block(std::string_view uniform, std::span<const float> values) const {
+void ProgramUniforms::set_block(std::string_view uniform, std::span<const float> values) const {
     const auto* u = find(uniform);
     if (!u) return;
     const auto count = static_cast<GLsizei>(values.size());
@@ -116,6 +113,13 @@ void Program::set_block(std::string_view uniform, std::span<const float> values)
     }
 }
 
+Program::Program(Device& device, std::string_view path, std::string_view text, uint32_t id)
+    : ProgramUniforms(device, path, text, id) {
+    GLint local[3] = {1, 1, 1};
+    glGetProgramiv(id, GL_COMPUTE_WORK_GROUP_SIZE, local);
+    for (int i = 0; i < 3; ++i) local_[i] = static_cast<uint32_t>(local[i]);
+}
+
 void Program::dispatch(uint32_t x, uint32_t y, uint32_t z) const {
     const uint32_t wanted[3] = {x, y, z};
     GLuint groups[3], rows = 1;
@@ -134,13 +138,13 @@ void Program::dispatch(uint32_t x, uint32_t y, uint32_t z) const {
         groups[1] = rows;
         set(kThreadsARow, uint32_t{groups[0] * local_[0]});
     }
-    glUseProgram(id_);
+    glUseProgram(id());
     glDispatchCompute(groups[0], groups[1], groups[2]);
     glMemoryBarrier(kAllReads);
 }
 
 void Program::dispatch_indirect(const Buffer& groups, size_t offset) const {
-    glUseProgram(id_);
+    glUseProgram(id());
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.id());
     glDispatchComputeIndirect(static_cast<GLintptr>(offset));
     glMemoryBarrier(kAllReads);
