@@ -1,7 +1,5 @@
 #include "gi/volume/disc_areas.h"
 
-#include <cassert>
-
 #include "gi/tracing/light_sampling.h"
 
 namespace lucarne::gi::volume {
@@ -22,19 +20,6 @@ Polygon octagon_about(const Grid& grid, const glm::vec3& position, const glm::ve
         polygon.add(middle + u * along + v * across);
     }
     return polygon;
-}
-
-Polygon cut(const Polygon& polygon, int axis, float sign, float low) {
-    // Sutherland & Hodgman 1974, "Reentrant polygon clipping", for one plane.
-    Polygon kept;
-    for (size_t i = 0; i < polygon.count; ++i) {
-        const glm::vec3 &from = polygon.corners[i], &to = polygon.corners[(i + 1) % polygon.count];
-        const float before = sign * from[axis] - low, after = sign * to[axis] - low;
-        if (before >= 0) kept.add(from);
-        if ((before >= 0) != (after >= 0)) kept.add(from + (to - from) * (before / (before - after)));
-        assert(kept.count < Polygon::kMost);
-    }
-    return kept;
 }
 
 }  // namespace lucarne::gi::volume

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace lucarne::gi::volume {
+
+/// A convex polygon in a plane, in units of voxels.
+template <class T>
+struct BasicPolygon {
+    using Point = glm::vec<3, T>;
+    static constexpr size_t kMost = 16;  ///< an octagon that six planes have cut has at most 14 corners
+    std::array<Point, kMost> corners;
+    size_t count = 0;
+
+    void add(const Point& corner) { corners[count++] = corner; }
+    T area() const {
+        Point sum(0);
+        for (size_t i = 2; i < count; ++i)
+            sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+        return glm::length(sum) / 2;
+    }
+};
+using Polygon = BasicPolygon<float>;
+
+/// Returns the part of a polygon in which a coordinate is at least `low` (or with `sign` -1, at most -`low`).
+template <class T>
+BasicPolygon<T> cut(const BasicPolygon<T>& polygon, int axis, T sign, T low) {
+    // Sutherland & Hodgman 1974, "Reentrant polygon clipping", for one plane.
+    BasicPolygon<T> kept;
+    for (size_t i = 0; i < polygon.count; ++i) {
+        const auto &from = polygon.corners[i], &to = polygon.corners[(i + 1) % polygon.count];
+        const T before = sign * from[axis] - low, after = sign * to[axis] - low;
+        if (before >= 0) kept.add(from);
+        if ((before >= 0) != (after >= 0)) kept.add(from + (to - from) * (before / (before - after)));
+        assert(kept.count < BasicPolygon<T>::kMost);
+    }
+    return kept;
+}
+
+/// Sets the first and the last of `most` layers along an axis that a polygon touches; the last is below the
+/// first if it touches none. Layers count as touched by what is nearer than `touching`, in voxels.
+template <class T>
+void layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching, int& first, int& last) {
+    T low = polygon.corners[0][axis], high = low;
+    for (size_t i = 1; i < polygon.count; ++i) {
+        low = std::min(low, polygon.corners[i][axis]);
+        high = std::max(high, polygon.corners[i][axis]);
+    }
+    // Comparisons as floats: a hostile polygon may lie beyond the range of int.
+    const auto end = static_cast<T>(most);
+    first = static_cast<int>(std::clamp(std::floor(low - touching), T(0), end));
+    last = static_cast<int>(std::clamp(std::floor(high + touching), T(-1), end - 1));
+}
+
+/// Calls body(cell, part) for every voxel of a grid of this size that a polygon touches, with the part of the
+/// polygon inside it. Voxels reach `touching` beyond their sides; if that is zero, what lies in the border of
+/// two belongs to the upper one, and the parts add up to the polygon.
+template <class T, class Body>
+void for_each_voxel_of(const glm::ivec3& size, const BasicPolygon<T>& polygon, T touching, const Body& body,
+                       int axis = 0, glm::ivec3 cell = glm::ivec3(0)) {
+    if (polygon.count < 3) return;
+    if (axis == 3) {
+        body(cell, polygon);
+        return;
+    }
+    int first = 0, last = 0;
+    layers_of(polygon, axis, size[axis], touching, first, last);
+    for (int i = first; i <= last; ++i) {
+        cell[axis] = i;
+        if (first == last)
+            for_each_voxel_of(size, polygon, touching, body, axis + 1, cell);
+        else
+            for_each_voxel_of(size,
+                              cut(cut(polygon, axis, T(1), static_cast<T>(i) - touching), axis, T(-1),
+                                  -static_cast<T>(i + 1) - touching),
+                              touching, body, axis + 1, cell);
+    }
+}
+
+}  // namespace lucarne::gi::volume
