@@ -1,0 +1,253 @@
+#include "gi/volume/images/image_voxels.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "gi/shared/surfel_code.h"
+#include "gi/volume/images/seen.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+constexpr uint32_t kEmptySlot = 0xffffffffu, kOutside = 0xfffffffeu;
+constexpr size_t kVoxelsATask = 8192, kSamplesATask = 8192;
+/// Cells farther away than this have no number.
+constexpr float kFarthestCell = 1e9f;
+
+/// Returns the middle of a cell, m.
+glm::vec3 middle_of(const glm::ivec3& cell, float voxel) {
+    return (glm::vec3(cell) + 0.5f) * voxel;
+}
+
+int wrapped(int at, int size) {
+    const int rest = at % size;
+    return rest < 0 ? rest + size : rest;
+}
+
+/// Linear light of the 1024 codes of an albedo's channel.
+std::array<float, 1024> linear_codes() {
+    std::array<float, 1024> linear{};
+    for (size_t i = 0; i < linear.size(); ++i) linear[i] = srgb_to_linear(static_cast<float>(i) / 1023);
+    return linear;
+}
+
+constexpr uint32_t kColourBits = 0x3fffffffu;
+
+}  // namespace
+
+ImageVoxels::ImageVoxels(const glm::ivec3& size, float voxel, const glm::ivec3& low)
+    : grid_{glm::vec3(0.0f), voxel, size}, low_(low), numbers_(grid_.cells(), kEmptySlot) {
+    assert(size.x > 0 && size.y > 0 && size.z > 0 && voxel > 0);
+}
+
+uint32_t ImageVoxels::slot(const glm::ivec3& cell) const {
+    return grid_.number(
+        {wrapped(cell.x, grid_.size.x), wrapped(cell.y, grid_.size.y), wrapped(cell.z, grid_.size.z)});
+}
+
+const SeenVoxel* ImageVoxels::at(const glm::ivec3& cell) const {
+    if (!holds(cell)) return nullptr;
+    const uint32_t number = numbers_[slot(cell)];
+    return number == kEmptySlot ? nullptr : &voxels_[number];
+}
+
+VoxelSet ImageVoxels::set() const {
+    VoxelSet set{grid_, glm::dvec3(low_) * static_cast<double>(grid_.voxel), {}};
+    for (const SeenVoxel& voxel : voxels_)
+        set.voxels.push_back(
+            {grid_.number(voxel.cell - low_), 0,
+             voxel.normal == SeenVoxel::kNoSide ? glm::vec3(0.0f) : decode_octahedral(voxel.normal),
+             decode_albedo(voxel.albedo)});
+    std::ranges::sort(set.voxels, {}, &OccupiedVoxel::cell);
+    return set;
+}
+
+void ImageVoxels::clear() {
+    for (const SeenVoxel& voxel : voxels_) numbers_[slot(voxel.cell)] = kEmptySlot;
+    voxels_.clear();
+}
+
+/// Takes the voxels of some pieces in the place of those before.
+void ImageVoxels::take(std::vector<std::vector<SeenVoxel>>& pieces) {
+    for (const SeenVoxel& voxel : voxels_) numbers_[slot(voxel.cell)] = kEmptySlot;
+    before_.clear();
+    for (const auto& piece : pieces) before_.insert(before_.end(), piece.begin(), piece.end());
+    voxels_.swap(before_);
+    for (uint32_t i = 0; i < voxels_.size(); ++i) numbers_[slot(voxels_[i].cell)] = i;
+}
+
+void ImageVoxels::move_to(const glm::ivec3& low) {
+    if (low == low_) return;
+    std::vector<std::vector<SeenVoxel>> kept(1);
+    for (const SeenVoxel& voxel : voxels_)
+        if (grid_.holds(voxel.cell - low)) kept[0].push_back(voxel);
+    take(kept);
+    low_ = low;
+}
+
+void ImageVoxels::update(std::span<const SeenImage> images, const ImageUpdate& how) {
+    ++frame_;
+    if (how.fused) {
+        fuse(images, how);
+    } else {
+        clean(images, how);
+        inject(images, how);
+    }
+}
+
+/// Clears the voxels that any picture shows to be empty.
+void ImageVoxels::clean(std::span<const SeenImage> images, const ImageUpdate& how) {
+    std::vector<VoxelSight> sights;
+    for (const SeenImage& image : images) sights.emplace_back(image, grid_.voxel);
+    std::vector<std::vector<SeenVoxel>> pieces((voxels_.size() + kVoxelsATask - 1) / kVoxelsATask);
+    parallel_ranges(voxels_.size(), kVoxelsATask, [&](size_t first, size_t last) {
+        auto& kept = pieces[first / kVoxelsATask];
+        kept.reserve(last - first);
+        for (size_t i = first; i < last; ++i) {
+            const glm::vec3 middle = middle_of(voxels_[i].cell, grid_.voxel);
+            const auto seen_empty = [&](const VoxelSight& sight) {
+                size_t pixel = 0;
+                return sight.at(middle, pixel) == Sight::empty &&
+                       (!how.careful || sight.surely_empty(middle));
+            };
+            if (std::ranges::none_of(sights, seen_empty)) kept.push_back(voxels_[i]);
+        }
+    });
+    size_t left = 0;
+    for (const auto& kept : pieces) left += kept.size();
+    if (left < voxels_.size()) take(pieces);
+}
+
+void ImageVoxels::inject(std::span<const SeenImage> images, const ImageUpdate& how) {
+    filled_.clear();
+    sums_.resize(voxels_.size());
+    for (uint32_t i = 0; i < images.size(); ++i) {
+        inject(images[i], i + 1, how);
+        finish_image(images[i], i + 1);
+    }
+    // Means of this update alone: nothing adds up over time.
+    for (const uint32_t number : filled_) {
+        const Sums& sums = sums_[number];
+        const float length = glm::length(sums.normal);
+        voxels_[number].normal =
+            length > 1e-3f * sums.count ? encode_octahedral(sums.normal / length) : SeenVoxel::kNoSide;
+        voxels_[number].albedo = encode_albedo(sums.albedo / sums.count);
+    }
+}
+
+/// Adds the samples of a picture to the sums of their voxels.
+void ImageVoxels::inject(const SeenImage& image, uint32_t number, const ImageUpdate& how) {
+    static const std::array<float, 1024> kLinear = linear_codes();
+    const uint32_t longer = std::max(image.view.width, image.view.height);
+    const uint32_t step = how.samples == 0 ? 1 : std::max(1u, longer / how.samples);
+    const uint32_t across = (image.view.width + step - 1) / step,
+                   down = (image.view.height + step - 1) / step;
+    const auto pixel_of = [&](size_t sample) {
+        const auto x = std::min<size_t>(sample % across * step + step / 2, image.view.width - 1);
+        const auto y = std::min<size_t>(sample / across * step + step / 2, image.view.height - 1);
+        return glm::uvec2(x, y);
+    };
+    std::vector<std::pair<uint32_t, glm::ivec3>> places(size_t{across} * down, {kOutside, glm::ivec3(0)});
+    parallel_ranges(places.size(), kSamplesATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const glm::uvec2 at = pixel_of(i);
+            const GBufferTexel& texel = image.texels[size_t{at.y} * image.view.width + at.x];
+            if (!(texel.depth > 0)) continue;
+            const glm::vec3 place =
+                glm::floor(texel_position(image.view, glm::vec2(at), texel) / grid_.voxel);
+            const glm::vec3 far = glm::abs(place);
+            if (!(far.x < kFarthestCell && far.y < kFarthestCell && far.z < kFarthestCell)) continue;
+            const glm::ivec3 cell(place);
+            if (holds(cell)) places[i] = {slot(cell), cell};
+        }
+    });
+    touched_.clear();
+    for (size_t i = 0; i < places.size(); ++i) {
+        const auto& [home, cell] = places[i];
+        if (home == kOutside) continue;
+        uint32_t& voxel = numbers_[home];
+        if (voxel == kEmptySlot) {
+            voxel = static_cast<uint32_t>(voxels_.size());
+            voxels_.push_back({.cell = cell});
+            sums_.emplace_back();
+        }
+        Sums& sums = sums_[voxel];
+        if (sums.frame != frame_) {
+            sums = {.frame = frame_};
+            filled_.push_back(voxel);
+        }
+        if (sums.image != number) {
+            sums.image = number;
+            sums.image_count = 0;
+            sums.image_light = glm::vec3(0.0f);
+            touched_.push_back(voxel);
+        }
+        const glm::uvec2 at = pixel_of(i);
+        const size_t pixel = size_t{at.y} * image.view.width + at.x;
+        const GBufferTexel& texel = image.texels[pixel];
+        sums.normal += texel_normal(texel);
+        sums.albedo += glm::vec3(kLinear[texel.albedo & 1023u], kLinear[texel.albedo >> 10 & 1023u],
+                                 kLinear[texel.albedo >> 20 & 1023u]);
+        sums.count += 1;
+        sums.image_count += 1;
+        if (!image.light.empty()) sums.image_light += image.light[pixel];
+    }
+}
+
+/// Brings the light of a picture to its voxels. The first light of an update replaces what was there; further
+/// lights add to it; a camera shows all light at once and replaces that of the lights (chapter 7.5).
+void ImageVoxels::finish_image(const SeenImage& image, uint32_t number) {
+    if (image.light.empty()) return;
+    for (const uint32_t voxel : touched_) {
+        Sums& sums = sums_[voxel];
+        assert(sums.image == number);
+        const glm::vec3 light = sums.image_light / sums.image_count;
+        voxels_[voxel].light = image.of_light && sums.lit ? voxels_[voxel].light + light : light;
+        sums.lit = true;
+    }
+    static_cast<void>(number);
+}
+
+/// Clears, keeps or fills every voxel of the window by what the pictures show at its middle.
+void ImageVoxels::fuse(std::span<const SeenImage> images, const ImageUpdate& how) {
+    std::vector<VoxelSight> sights;
+    for (const SeenImage& image : images) sights.emplace_back(image, grid_.voxel);
+    std::vector<std::vector<SeenVoxel>> pieces(static_cast<size_t>(grid_.size.z));
+    parallel_ranges(pieces.size(), 1, [&](size_t first, size_t) {
+        glm::ivec3 cell(low_.x, low_.y, low_.z + static_cast<int>(first));
+        for (int y = 0; y < grid_.size.y; ++y)
+            for (int x = 0; x < grid_.size.x; ++x) {
+                cell.x = low_.x + x;
+                cell.y = low_.y + y;
+                const glm::vec3 middle = middle_of(cell, grid_.voxel);
+                const uint32_t number = numbers_[slot(cell)];
+                bool filled = number != kEmptySlot, lit = false;
+                SeenVoxel voxel = filled ? voxels_[number] : SeenVoxel{.cell = cell};
+                for (size_t i = 0; i < images.size(); ++i) {
+                    size_t pixel = 0;
+                    const Sight sight = sights[i].at(middle, pixel);
+                    if (sight == Sight::empty && filled && (!how.careful || sights[i].surely_empty(middle)))
+                        filled = false;
+                    if (sight != Sight::surface) continue;
+                    filled = true;
+                    voxel.normal = images[i].texels[pixel].normal;
+                    voxel.albedo = images[i].texels[pixel].albedo & kColourBits;
+                    if (images[i].light.empty()) continue;
+                    const glm::vec3& light = images[i].light[pixel];
+                    voxel.light = images[i].of_light && lit ? voxel.light + light : light;
+                    lit = true;
+                }
+                if (filled) pieces[first].push_back(voxel);
+            }
+    });
+    take(pieces);
+}
+
+}  // namespace lucarne::gi::volume
