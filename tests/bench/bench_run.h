@@ -1,4 +1,5 @@
-// The command line of every benchmark program: `PROGRAM [FOLDER] [SUBJECT] [--scale S] [--OPTION NUMBER]...`.
+// The command line of every benchmark program: `PROGRAM [FOLDER] [SUBJECT [PART...]] [--scale S] [--OPTION
+// NUMBER]...`.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +28,12 @@ struct BenchRun {
     std::filesystem::path folder;           ///< for scans, caches and pictures
     double scale = 1;                       ///< factor of the full size, in (0, 1]
     std::string subject;                    ///< one of the program's subjects; empty: none is named
+    std::vector<std::string> parts;         ///< what of the subject is wanted; none: all
     std::map<std::string, double> options;  ///< the program's own options, without the dashes
+
+    bool wants(const std::string& part) const {
+        return parts.empty() || std::ranges::find(parts, part) != parts.end();
+    }
 
     uint64_t points(uint64_t full) const { return std::max<uint64_t>(scaled(full), 10'000); }
     uint64_t count(uint64_t full) const { return std::max<uint64_t>(scaled(full), 1); }
@@ -61,8 +67,9 @@ struct BenchRun {
 
 /// The words that a benchmark program takes beside its folder and the scale.
 struct BenchWords {
-    std::vector<std::string> options;   ///< with a number each, without the dashes
-    std::vector<std::string> subjects;  ///< what can be measured instead of the usual
+    std::vector<std::string> options;     ///< with a number each, without the dashes
+    std::vector<std::string> subjects;    ///< what can be measured instead of the usual
+    std::vector<std::string> parts = {};  ///< of a subject; any of them may be named
 };
 
 /// Reads the arguments into `run`. Returns the first wrong argument, or an empty text.
@@ -72,6 +79,8 @@ inline std::string read_arguments(int argc, char** argv, const BenchWords& words
         if (!argument.starts_with("--")) {
             if (std::ranges::find(words.subjects, argument) != words.subjects.end())
                 run.subject = argument;
+            else if (std::ranges::find(words.parts, argument) != words.parts.end())
+                run.parts.push_back(argument);
             else
                 run.folder = argument;
             continue;

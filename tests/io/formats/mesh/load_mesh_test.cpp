@@ -4,15 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/temporary_folder.h"
 #include "io/files/file.h"
+#include "tests/temporary_folder.h"
 
 namespace lucarne::io {
 namespace {
 
 class LoadMesh : public testing::Test {
  protected:
-    Result<mesh::Mesh> load(const std::string& name, const std::string& text, const ReadOptions& options = {}) {
+    Result<mesh::Mesh> load(const std::string& name, const std::string& text,
+                            const ReadOptions& options = {}) {
         const std::string path = folder_ / name;
         EXPECT_TRUE(write_file(path, text, true));
         return load_mesh(path, options);
@@ -45,9 +46,9 @@ TEST_F(LoadMesh, TheContentTellsTheFormat) {
 }
 
 TEST_F(LoadMesh, FilesWithoutTrianglesHaveNone) {
-    for (const auto& [name, text] : {std::pair{"rows.xyz", "1 2 3\n4 5 6\n"},
-                                     std::pair{"vertices.obj", "v 0 0 0\nv 1 0 0\n"},
-                                     std::pair{"unknown.bin", "\x01\x02\x03"}}) {
+    for (const auto& [name, text] :
+         {std::pair{"rows.xyz", "1 2 3\n4 5 6\n"}, std::pair{"vertices.obj", "v 0 0 0\nv 1 0 0\n"},
+          std::pair{"unknown.bin", "\x01\x02\x03"}}) {
         const auto mesh = load(name, text);
         ASSERT_TRUE(mesh) << mesh.error().line();
         EXPECT_TRUE(mesh->triangles.empty()) << name;
