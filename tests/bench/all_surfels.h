@@ -34,9 +34,10 @@ inline Result<std::unique_ptr<WholeCut>> whole_cut(gi::Device& device, const std
     std::vector<gi::CutEntry> entries;
     for (const auto& node : cut.nodes) {
         LUCARNE_ASSIGN(const auto data, source->load(node.node));
-        LUCARNE_ASSIGN(const bool fits,
-                       whole->pool.load(node.node, gi::pack_surfels(source->header(),
-                                                                   source->nodes()[node.node], data, scene)));
+        LUCARNE_ASSIGN(
+            const bool fits,
+            whole->pool.load(node.node,
+                             gi::pack_surfels(source->header(), source->nodes()[node.node], data, scene)));
         if (!fits) return failed(input, "does not fit the pool");
         entries.push_back({node.node, node.count});
     }
@@ -45,7 +46,7 @@ inline Result<std::unique_ptr<WholeCut>> whole_cut(gi::Device& device, const std
         for (size_t i = 0; i < filling.nodes.size(); ++i) {
             LUCARNE_ASSIGN(const bool fits,
                            whole->pool.load(number++, gi::pack_surfels(filling.header, filling.nodes[i],
-                                                                      filling.records[i], scene)));
+                                                                       filling.records[i], scene)));
             if (!fits) return failed(input, "does not fit the pool");
         }
     LUCARNE_TRY(whole->pool.make_cut(device, *source, entries, glm::dvec3(0.0), whole->cut, {}, fillings));
