@@ -25,6 +25,10 @@ std::vector<std::string> includes_of(const std::filesystem::path& file) {
     return found;
 }
 
+bool is_shader(const std::filesystem::path& extension) {
+    return std::set<std::filesystem::path>{".comp", ".vert", ".geom", ".frag", ".glsl"}.contains(extension);
+}
+
 bool starts_with(const std::string& text, const std::string& prefix) {
     return text.rfind(prefix, 0) == 0;
 }
@@ -153,7 +157,7 @@ TEST(Structure, NoShaderHasABindingOfItsOwn) {
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCARNE_SOURCE_DIR) / "gi")) {
         const auto extension = entry.path().extension();
-        if (extension != ".comp" && extension != ".glsl") continue;
+        if (!is_shader(extension)) continue;
         ++shaders;
         std::ifstream in(entry.path());
         for (std::string line; std::getline(in, line);)
@@ -186,7 +190,7 @@ TEST(Structure, NoConstantStandsInAShaderAndInCpp) {
     std::map<std::string, std::string> in_shaders;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "gi")) {
         const auto extension = entry.path().extension();
-        if (extension != ".comp" && extension != ".glsl" && extension != ".cl") continue;
+        if (!is_shader(extension) && extension != ".cl") continue;
         for (const std::string& name : constants_of(entry.path()))
             in_shaders[name] = entry.path().lexically_relative(root);
     }

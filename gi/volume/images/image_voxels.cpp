@@ -17,7 +17,7 @@ namespace lucarne::gi::volume {
 namespace {
 
 constexpr uint32_t kEmptySlot = 0xffffffffu, kOutside = 0xfffffffeu;
-constexpr size_t kVoxelsATask = 8192, kSamplesATask = 8192;
+constexpr size_t kVoxelsATask = 4096, kSamplesATask = 8192, kRowsATask = 64;
 /// Cells farther away than this have no number.
 constexpr float kFarthestCell = 1e9f;
 
@@ -74,21 +74,21 @@ void ImageVoxels::clear() {
     voxels_.clear();
 }
 
-/// Takes the voxels of some pieces in the place of those before.
-void ImageVoxels::take(std::vector<std::vector<SeenVoxel>>& pieces) {
-    for (const SeenVoxel& voxel : voxels_) numbers_[slot(voxel.cell)] = kEmptySlot;
-    before_.clear();
-    for (const auto& piece : pieces) before_.insert(before_.end(), piece.begin(), piece.end());
-    voxels_.swap(before_);
-    for (uint32_t i = 0; i < voxels_.size(); ++i) numbers_[slot(voxels_[i].cell)] = i;
+/// Copies the voxels that are to stay, by number, from V_prev to V_curr.
+template <class Stays>
+void ImageVoxels::keep(const Stays& stays) {
+    before_.swap(voxels_);
+    voxels_.clear();
+    for (size_t i = 0; i < before_.size(); ++i) {
+        uint32_t& number = numbers_[slot(before_[i].cell)];
+        number = stays(i) ? static_cast<uint32_t>(voxels_.size()) : kEmptySlot;
+        if (number != kEmptySlot) voxels_.push_back(before_[i]);
+    }
 }
 
 void ImageVoxels::move_to(const glm::ivec3& low) {
     if (low == low_) return;
-    std::vector<std::vector<SeenVoxel>> kept(1);
-    for (const SeenVoxel& voxel : voxels_)
-        if (grid_.holds(voxel.cell - low)) kept[0].push_back(voxel);
-    take(kept);
+    keep([&](size_t i) { return grid_.holds(before_[i].cell - low); });
     low_ = low;
 }
 
@@ -106,23 +106,18 @@ void ImageVoxels::update(std::span<const SeenImage> images, const ImageUpdate& h
 void ImageVoxels::clean(std::span<const SeenImage> images, const ImageUpdate& how) {
     std::vector<VoxelSight> sights;
     for (const SeenImage& image : images) sights.emplace_back(image, grid_.voxel);
-    std::vector<std::vector<SeenVoxel>> pieces((voxels_.size() + kVoxelsATask - 1) / kVoxelsATask);
+    std::vector<uint8_t> kept(voxels_.size(), 1);
     parallel_ranges(voxels_.size(), kVoxelsATask, [&](size_t first, size_t last) {
-        auto& kept = pieces[first / kVoxelsATask];
-        kept.reserve(last - first);
         for (size_t i = first; i < last; ++i) {
             const glm::vec3 middle = middle_of(voxels_[i].cell, grid_.voxel);
-            const auto seen_empty = [&](const VoxelSight& sight) {
+            kept[i] = std::ranges::none_of(sights, [&](const VoxelSight& sight) {
                 size_t pixel = 0;
                 return sight.at(middle, pixel) == Sight::empty &&
                        (!how.careful || sight.surely_empty(middle));
-            };
-            if (std::ranges::none_of(sights, seen_empty)) kept.push_back(voxels_[i]);
+            });
         }
     });
-    size_t left = 0;
-    for (const auto& kept : pieces) left += kept.size();
-    if (left < voxels_.size()) take(pieces);
+    keep([&](size_t i) { return kept[i] != 0; });
 }
 
 void ImageVoxels::inject(std::span<const SeenImage> images, const ImageUpdate& how) {
@@ -133,13 +128,16 @@ void ImageVoxels::inject(std::span<const SeenImage> images, const ImageUpdate& h
         finish_image(images[i], i + 1);
     }
     // Means of this update alone: nothing adds up over time.
-    for (const uint32_t number : filled_) {
-        const Sums& sums = sums_[number];
-        const float length = glm::length(sums.normal);
-        voxels_[number].normal =
-            length > 1e-3f * sums.count ? encode_octahedral(sums.normal / length) : SeenVoxel::kNoSide;
-        voxels_[number].albedo = encode_albedo(sums.albedo / sums.count);
-    }
+    parallel_ranges(filled_.size(), kVoxelsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            SeenVoxel& voxel = voxels_[filled_[i]];
+            const Sums& sums = sums_[filled_[i]];
+            const float length = glm::length(sums.normal);
+            voxel.normal =
+                length > 1e-3f * sums.count ? encode_octahedral(sums.normal / length) : SeenVoxel::kNoSide;
+            voxel.albedo = encode_albedo(sums.albedo / sums.count);
+        }
+    });
 }
 
 /// Adds the samples of a picture to the sums of their voxels.
@@ -219,35 +217,53 @@ void ImageVoxels::finish_image(const SeenImage& image, uint32_t number) {
 void ImageVoxels::fuse(std::span<const SeenImage> images, const ImageUpdate& how) {
     std::vector<VoxelSight> sights;
     for (const SeenImage& image : images) sights.emplace_back(image, grid_.voxel);
-    std::vector<std::vector<SeenVoxel>> pieces(static_cast<size_t>(grid_.size.z));
-    parallel_ranges(pieces.size(), 1, [&](size_t first, size_t) {
-        glm::ivec3 cell(low_.x, low_.y, low_.z + static_cast<int>(first));
-        for (int y = 0; y < grid_.size.y; ++y)
-            for (int x = 0; x < grid_.size.x; ++x) {
-                cell.x = low_.x + x;
-                cell.y = low_.y + y;
-                const glm::vec3 middle = middle_of(cell, grid_.voxel);
-                const uint32_t number = numbers_[slot(cell)];
-                bool filled = number != kEmptySlot, lit = false;
-                SeenVoxel voxel = filled ? voxels_[number] : SeenVoxel{.cell = cell};
-                for (size_t i = 0; i < images.size(); ++i) {
-                    size_t pixel = 0;
-                    const Sight sight = sights[i].at(middle, pixel);
-                    if (sight == Sight::empty && filled && (!how.careful || sights[i].surely_empty(middle)))
-                        filled = false;
-                    if (sight != Sight::surface) continue;
-                    filled = true;
-                    voxel.normal = images[i].texels[pixel].normal;
-                    voxel.albedo = images[i].texels[pixel].albedo & kColourBits;
-                    if (images[i].light.empty()) continue;
-                    const glm::vec3& light = images[i].light[pixel];
-                    voxel.light = images[i].of_light && lit ? voxel.light + light : light;
-                    lit = true;
-                }
-                if (filled) pieces[first].push_back(voxel);
+    std::vector<int> wrapped_x;
+    for (int x = 0; x < grid_.size.x; ++x) wrapped_x.push_back(wrapped(low_.x + x, grid_.size.x));
+    std::vector<std::vector<SeenVoxel>> rows(static_cast<size_t>(grid_.size.y) *
+                                             static_cast<size_t>(grid_.size.z));
+    parallel_ranges(rows.size(), kRowsATask, [&](size_t first, size_t last) {
+        for (size_t row = first; row < last; ++row) {
+            glm::ivec3 cell = low_ + glm::ivec3(0, static_cast<int>(row) % grid_.size.y,
+                                                static_cast<int>(row) / grid_.size.y);
+            const glm::ivec3 home(0, wrapped(cell.y, grid_.size.y), wrapped(cell.z, grid_.size.z));
+            const uint32_t* numbers = &numbers_[grid_.number(home)];
+            for (const int x : wrapped_x) {
+                fuse_cell(sights, images, how, cell, numbers[x], rows[row]);
+                ++cell.x;
             }
+        }
     });
-    take(pieces);
+    for (const SeenVoxel& voxel : voxels_) numbers_[slot(voxel.cell)] = kEmptySlot;
+    before_.swap(voxels_);
+    voxels_.clear();
+    for (const auto& row : rows) voxels_.insert(voxels_.end(), row.begin(), row.end());
+    for (uint32_t i = 0; i < voxels_.size(); ++i) numbers_[slot(voxels_[i].cell)] = i;
+}
+
+/// Adds the voxel at a cell to `row` if it is filled afterwards. `number`: of the voxel there, or kEmptySlot.
+void ImageVoxels::fuse_cell(std::span<const VoxelSight> sights, std::span<const SeenImage> images,
+                            const ImageUpdate& how, const glm::ivec3& cell, uint32_t number,
+                            std::vector<SeenVoxel>& row) const {
+    const glm::vec3 middle = middle_of(cell, grid_.voxel);
+    bool filled = number != kEmptySlot, lit = false;
+    SeenVoxel voxel;
+    if (filled) voxel = voxels_[number];
+    for (size_t i = 0; i < images.size(); ++i) {
+        size_t pixel = 0;
+        const Sight sight = sights[i].at(middle, pixel);
+        if (sight == Sight::empty && filled && (!how.careful || sights[i].surely_empty(middle)))
+            filled = false;
+        if (sight != Sight::surface) continue;
+        filled = true;
+        voxel.cell = cell;
+        voxel.normal = images[i].texels[pixel].normal;
+        voxel.albedo = images[i].texels[pixel].albedo & kColourBits;
+        if (images[i].light.empty()) continue;
+        const glm::vec3& light = images[i].light[pixel];
+        voxel.light = images[i].of_light && lit ? voxel.light + light : light;
+        lit = true;
+    }
+    if (filled) row.push_back(voxel);
 }
 
 }  // namespace lucarne::gi::volume

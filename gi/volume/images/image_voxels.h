@@ -42,6 +42,8 @@ struct ImageUpdate {
     bool careful = true;
 };
 
+class VoxelSight;
+
 /// Voxels of what pictures have shown over time (Gaitatzes 2012, chapter 7): each update clears those that
 /// are seen to be empty, and fills those in which surfaces are seen. Others stay as they are. The window of
 /// voxels may move; voxels that stay inside keep their content, because cells are addressed modulo the size
@@ -78,15 +80,18 @@ class ImageVoxels {
         uint32_t image = 0;
         bool lit = false;
     };
-    struct Samples;
     bool holds(const glm::ivec3& cell) const { return grid_.holds(cell - low_); }
     uint32_t slot(const glm::ivec3& cell) const;
-    void take(std::vector<std::vector<SeenVoxel>>& pieces);
+    template <class Stays>
+    void keep(const Stays& stays);
     void clean(std::span<const SeenImage> images, const ImageUpdate& how);
     void inject(std::span<const SeenImage> images, const ImageUpdate& how);
     void inject(const SeenImage& image, uint32_t number, const ImageUpdate& how);
     void finish_image(const SeenImage& image, uint32_t number);
     void fuse(std::span<const SeenImage> images, const ImageUpdate& how);
+    void fuse_cell(std::span<const VoxelSight> sights, std::span<const SeenImage> images,
+                   const ImageUpdate& how, const glm::ivec3& cell, uint32_t number,
+                   std::vector<SeenVoxel>& row) const;
 
     Grid grid_;  ///< its size and voxel only
     glm::ivec3 low_;

@@ -4,6 +4,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "gi/volume/images/image_voxels.h"
@@ -21,23 +22,27 @@ enum class Sight : uint8_t {
 class VoxelSight {
  public:
     VoxelSight(const SeenImage& image, float voxel) : image_(image), half_(0.5f * voxel) {
+        const CameraView& view = image.view;
         // The farthest corner of a voxel along the view axis (the thesis' bias b, equation 17, whose
         // listing 7.1 takes six times as much).
-        const glm::vec3 along = glm::abs(xyz_of(image.view.forward));
+        const glm::vec3 along = glm::abs(xyz_of(view.forward));
         bias_ = half_ * (along.x + along.y + along.z);
+        const auto scaled = [](const glm::vec3& axis, float pixels) {
+            return axis * (0.5f * pixels / glm::dot(axis, axis));
+        };
+        size_ = glm::vec2(static_cast<float>(view.width), static_cast<float>(view.height));
+        right_ = scaled(xyz_of(view.right), size_.x);
+        down_ = -scaled(xyz_of(view.up), size_.y);
+        centre_ = 0.5f * size_ - glm::vec2(view.right.w, view.up.w);
     }
 
     /// Tells the sight of a voxel about `middle`. Sets `pixel` unless it is unknown.
     Sight at(const glm::vec3& middle, size_t& pixel) const {
-        const CameraView& view = image_.view;
-        float depth = 0;
-        const glm::vec2 place = view_place(view, middle, depth);
+        glm::vec2 place;
+        const float depth = project(middle, place);
         // A voxel beside or behind the viewer is in no picture; the comparisons are false for NaN, too.
-        if (!(depth > view.origin.w) ||
-            !(place.x >= 0 && place.y >= 0 && place.x < static_cast<float>(view.width) &&
-              place.y < static_cast<float>(view.height)))
-            return Sight::unknown;
-        pixel = static_cast<size_t>(place.y) * view.width + static_cast<size_t>(place.x);
+        if (!(depth > image_.view.origin.w && shows(place))) return Sight::unknown;
+        pixel = number_of(place);
         const GBufferTexel& texel = image_.texels[pixel];
         if (!(texel.depth > 0)) return Sight::empty;
         if (depth > texel.depth + bias_) return Sight::unknown;
@@ -48,18 +53,14 @@ class VoxelSight {
     /// surface crosses it, neither at its middle nor toward its corners, and nothing hides a part of it. A
     /// surface in a voxel may be visible beside the middle alone: at silhouettes, or because it is slanted.
     bool surely_empty(const glm::vec3& middle) const {
-        const CameraView& view = image_.view;
-        float depth = 0;
-        const glm::vec2 place = view_place(view, middle, depth);
-        const float reach = half_ / pixel_height(view, depth);
+        glm::vec2 place;
+        const float depth = project(middle, place);
+        const float reach = half_ / pixel_height(image_.view, depth);
         constexpr glm::vec2 kTaps[] = {{0, 0}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
         for (const glm::vec2& tap : kTaps) {
             const glm::vec2 at = glm::floor(place + reach * tap);
-            if (!(at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(view.width) &&
-                  at.y < static_cast<float>(view.height)))
-                continue;
-            const GBufferTexel& texel =
-                image_.texels[static_cast<size_t>(at.y) * view.width + static_cast<size_t>(at.x)];
+            if (!shows(at)) continue;
+            const GBufferTexel& texel = image_.texels[number_of(at)];
             if (!(texel.depth > 0)) continue;
             if (depth >= texel.depth - bias_ || crosses(middle, at, texel)) return false;
         }
@@ -67,6 +68,21 @@ class VoxelSight {
     }
 
  private:
+    /// view_place() of the view, with what is the same for all voxels computed once.
+    float project(const glm::vec3& position, glm::vec2& place) const {
+        const glm::vec3 offset = position - xyz_of(image_.view.origin);
+        const float depth = glm::dot(offset, xyz_of(image_.view.forward));
+        const float scale = is_parallel(image_.view) ? 1.0f : 1.0f / depth;
+        place = centre_ + scale * glm::vec2(glm::dot(offset, right_), glm::dot(offset, down_));
+        return depth;
+    }
+    bool shows(const glm::vec2& place) const {
+        return place.x >= 0 && place.y >= 0 && place.x < size_.x && place.y < size_.y;
+    }
+    size_t number_of(const glm::vec2& place) const {
+        return static_cast<size_t>(static_cast<uint32_t>(place.y)) * image_.view.width +
+               static_cast<uint32_t>(place.x);
+    }
     /// Whether the plane of a pixel's surface crosses the voxel.
     bool crosses(const glm::vec3& middle, const glm::vec2& pixel, const GBufferTexel& texel) const {
         const glm::vec3 normal = texel_normal(texel), off = glm::abs(normal);
@@ -76,6 +92,8 @@ class VoxelSight {
 
     const SeenImage& image_;
     float half_, bias_ = 0;
+    glm::vec3 right_{0.0f}, down_{0.0f};  ///< pixels a metre, at a depth of 1 m
+    glm::vec2 centre_{0.0f}, size_{0.0f};
 };
 
 }  // namespace lucarne::gi::volume

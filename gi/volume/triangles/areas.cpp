@@ -30,7 +30,7 @@ void divide(const GridTriangle& triangle, const glm::ivec3& size, std::vector<Vo
     const glm::vec3 normal(cross / length);
     BasicPolygon<double> whole;
     for (const glm::dvec3& corner : triangle.corners) whole.add(corner);
-    const auto [a, b, c] = triangle.corners;
+    const glm::dvec3 &a = triangle.corners[0], &b = triangle.corners[1], &c = triangle.corners[2];
     for_each_voxel_of(size, whole, 0.0, [&](const glm::ivec3& cell, const BasicPolygon<double>& part) {
         // Albedos are linear in the triangle, so that of a part is that of its centre of gravity.
         double area = 0;

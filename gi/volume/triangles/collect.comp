@@ -5,10 +5,10 @@
 layout(local_size_x = 64) in;
 
 layout(binding = kUnitCoverage) uniform sampler3D coverage;
-#ifdef ALBEDO
+#ifdef LUCARNE_ALBEDO
 layout(binding = kUnitAlbedo) uniform sampler3D albedo_sum;
 #endif
-#ifdef NORMAL
+#ifdef LUCARNE_NORMAL
 layout(binding = kUnitNormal) uniform sampler3D normal_sum;
 #endif
 layout(std430, binding = kBindFound) writeonly buffer Found { FoundVoxel found[]; };
@@ -28,13 +28,13 @@ void main() {
     // The turn of sweep_axis.glsl, undone.
     uvec3 cell = uvec3(axis == 0 ? at.zxy : axis == 1 ? at.yzx : at);
     FoundVoxel voxel = FoundVoxel((cell.z * grid_height + cell.y) * grid_width + cell.x, area, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-#ifdef ALBEDO
+#ifdef LUCARNE_ALBEDO
     vec4 albedo = texelFetch(albedo_sum, at, 0);
     voxel.red = albedo.x;
     voxel.green = albedo.y;
     voxel.blue = albedo.z;
 #endif
-#ifdef NORMAL
+#ifdef LUCARNE_NORMAL
     vec4 normal = texelFetch(normal_sum, at, 0);
     voxel.normal_x = normal.x;
     voxel.normal_y = normal.y;

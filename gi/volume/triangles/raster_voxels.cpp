@@ -77,8 +77,8 @@ class Sweeps {
         attributes_.push_back({1, options.bits});
         if (options.albedo) attributes_.push_back({4, options.bits});
         if (options.normals) attributes_.push_back({4, options.bits});
-        if (options.albedo) outputs_.emplace_back("ALBEDO", "1");
-        if (options.normals) outputs_.emplace_back("NORMAL", options.albedo ? "2" : "1");
+        if (options.albedo) outputs_.emplace_back("LUCARNE_ALBEDO", "1");
+        if (options.normals) outputs_.emplace_back("LUCARNE_NORMAL", "1");
     }
 
     Result<void> prepare() {
@@ -93,7 +93,7 @@ class Sweeps {
                                 : static_cast<int>(vertices) / 3;
         Defines defines = outputs_;
         defines.emplace_back("VERTICES", std::to_string(vertices));
-        if (!cuts) defines.emplace_back("DISCARD", "1");
+        if (!cuts) defines.emplace_back("LUCARNE_DISCARD", "1");
         const RasterShaders shaders{
             "gi/volume/triangles/corners.vert",
             cuts ? "gi/volume/triangles/slice.geom" : "gi/volume/triangles/repeat.geom",

@@ -9,23 +9,25 @@ flat in int slice;
 uniform vec3 grid_size;
 
 layout(location = 0) out float coverage;
-#ifdef ALBEDO
-layout(location = ALBEDO) out vec4 albedo_sum;
+#ifdef LUCARNE_ALBEDO
+layout(location = 1) out vec4 albedo_sum;
 #endif
-#ifdef NORMAL
-layout(location = NORMAL) out vec4 normal_sum;
+#if defined(LUCARNE_ALBEDO) && defined(LUCARNE_NORMAL)
+layout(location = 2) out vec4 normal_sum;
+#elif defined(LUCARNE_NORMAL)
+layout(location = 1) out vec4 normal_sum;
 #endif
 
 void main() {
-#ifdef DISCARD
+#ifdef LUCARNE_DISCARD
     // Half open: what lies in the border of two slices belongs to one of them.
     if (clamp(int(floor(depth)), 0, int(grid_size.z) - 1) != slice) discard;
 #endif
     coverage = surface_area;
-#ifdef ALBEDO
+#ifdef LUCARNE_ALBEDO
     albedo_sum = vec4(surface_albedo, 1.0) * surface_area;
 #endif
-#ifdef NORMAL
+#ifdef LUCARNE_NORMAL
     normal_sum = vec4(surface_normal, 1.0) * surface_area;
 #endif
 }
