@@ -194,18 +194,19 @@ void FirstBounce::look(const Face& face, std::vector<Ray>& rays) const {
         const float distance2 = glm::dot(way, way);
         const bool one = cluster.faces == 1;
         const float length2 = glm::dot(cluster.normal, cluster.normal);
-        const float spread = std::sqrt(std::max(1 - length2, 0.0f) * distance2);
-        if (farthest(cluster, face.position, face.normal) < in_plane ||
-            farthest(cluster, face.position, -cluster.normal) + spread < in_plane) {
-            i = next;  // all of it is below the horizon, or faces away
-            continue;
-        }
-        const bool small = cluster.radius * cluster.radius < kOpening * kOpening * distance2;
-        if (!one && !(small && length2 > kOneDirection * kOneDirection)) {
-            ++i;
+        const bool small = cluster.radius * cluster.radius < kOpening * kOpening * distance2 &&
+                           length2 > kOneDirection * kOneDirection;
+        if (!one && !small) {
+            // All of it may be below the horizon, or face away.
+            const float spread = std::sqrt(std::max(1 - length2, 0.0f) * distance2);
+            const bool hidden = farthest(cluster, face.position, face.normal) < in_plane ||
+                                farthest(cluster, face.position, -cluster.normal) + spread < in_plane;
+            i = hidden ? next : i + 1;
             continue;
         }
         i = next;
+        if (glm::dot(way, face.normal) < -cluster.radius || glm::dot(way, cluster.normal) > cluster.radius)
+            continue;
         // Surfaces in one voxel are too near to each other for its resolution.
         if (one && space_.faces.all()[cluster.face].voxel == face.voxel) continue;
         float factor = 0;
