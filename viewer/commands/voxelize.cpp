@@ -38,7 +38,7 @@ struct VoxelizeOptions {
     Method method = Method::automatic;
     uint32_t grid = 128, vertices = 0;
     uint32_t bits = 32;
-    std::string points = "4M", output, json;
+    std::string points = "4M", memory = "2G", output, json;
     bool overwrite = false;
 };
 
@@ -48,7 +48,9 @@ Result<VoxelSet> voxels_of_mesh(const VoxelizeOptions& options, const io::mesh::
                                                      options.grid));
     if (options.method == Method::automatic || options.method == Method::area)
         return gi::volume::areas_of_triangles(triangles);
+    LUCARNE_ASSIGN(const uint64_t memory, parse_bytes("--device-memory", options.memory));
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+    device->set_memory_cap(memory);
     const auto slicing =
         options.method == Method::geometry ? gi::volume::Slicing::cut : gi::volume::Slicing::discard;
     return gi::volume::rasterize_triangles(
@@ -180,6 +182,11 @@ void add_voxelize(CommandLine& line) {
         .one_of({16, 32})
         .show_default()
         .type_name("16|32");
+    command
+        .add("--device-memory", options->memory,
+             "With geometry or slices: memory of the device to use at most")
+        .show_default()
+        .type_name("BYTES[k|M|G]");
     command.add("--points", options->points, "With surfels: how many points of the scan to take at most")
         .show_default()
         .type_name("N[k|M|G]");

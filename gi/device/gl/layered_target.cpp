@@ -14,6 +14,8 @@
 namespace lucarne::gi {
 namespace {
 
+constexpr const char* kLessMemory = "choose a smaller grid, 16 bits or fewer attributes";
+
 GLenum format_of(const TargetAttribute& attribute) {
     if (attribute.components == 1) return attribute.bits == 16 ? GL_R16F : GL_R32F;
     return attribute.bits == 16 ? GL_RGBA16F : GL_RGBA32F;
@@ -40,7 +42,11 @@ Result<LayeredTarget> LayeredTarget::create(Device& device, const glm::ivec3& si
     uint64_t bytes = 0;
     for (const TargetAttribute& attribute : attributes) bytes += attribute.bytes();
     bytes *= static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) * static_cast<uint64_t>(size.z);
-    LUCARNE_TRY(device.take_memory(bytes, what));
+    if (auto taken = device.take_memory(bytes, what); !taken) {
+        Error error = std::move(taken).error();
+        error.todo = kLessMemory;
+        return tl::make_unexpected(std::move(error));
+    }
     LayeredTarget target;
     target.device_ = &device;
     target.bytes_ = bytes;
@@ -63,8 +69,7 @@ Result<LayeredTarget> LayeredTarget::create(Device& device, const glm::ivec3& si
     glNamedFramebufferDrawBuffers(target.framebuffer_, static_cast<GLsizei>(attributes.size()),
                                   buffers.data());
     if (glGetError() != GL_NO_ERROR)
-        return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20),
-                      "choose a smaller grid or fewer attributes");
+        return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kLessMemory);
     if (glCheckNamedFramebufferStatus(target.framebuffer_, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         return failed(name, "the device cannot draw into layers of these formats", "choose --by area");
     return target;

@@ -14,7 +14,7 @@ namespace {
 
 /// A box whose extent is a whole number of voxels up to this has no voxel more for the error of rounding.
 constexpr double kRounding = 1e-4;
-constexpr double kLargestBox = 1e30, kSmallestBox = 1e-30;  ///< m: squares of voxels are floats
+constexpr double kLargestBox = 1e15, kSmallestBox = 1e-15;  ///< m: areas are floats
 
 }  // namespace
 

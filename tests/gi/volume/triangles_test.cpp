@@ -54,7 +54,12 @@ TEST(MeshTriangles, MeshesWithoutTrianglesAndImpossibleGridsAreErrors) {
     Mesh unknown = box(glm::dvec3(0), glm::dvec3(1));
     for (glm::dvec3& p : unknown.positions) p.x = NAN;
     EXPECT_FALSE(MeshTriangles::create(finished(std::move(unknown)), 1, 64));
-    EXPECT_FALSE(MeshTriangles::create(finished(box(glm::dvec3(-1e30), glm::dvec3(1e30))), 1, 64));
+    for (const double size : {1e-20, 1e16, 1e30})
+        EXPECT_FALSE(MeshTriangles::create(finished(box(glm::dvec3(0), glm::dvec3(size))), 1, 64)) << size;
+    const Mesh vast = finished(box(glm::dvec3(0), glm::dvec3(9e14)));
+    const auto large = MeshTriangles::create(vast, 1, 64);
+    ASSERT_TRUE(large);
+    EXPECT_TRUE(std::isfinite(areas_of_triangles(*large).area()));
 }
 
 TEST(AreasOfTriangles, OfABoxAreItsSides) {

@@ -81,6 +81,9 @@ TEST_F(VoxelizeCommand, AnswersImpossibleRequestsInOneLine) {
         EXPECT_EQ(outcome.code, 2) << wrong;
         EXPECT_EQ(std::ranges::count(outcome.output, '\n'), 1) << outcome.output;
     }
+    const auto large = lucarne(mesh + " --by slices --grid 1000 --device-memory 100M");
+    EXPECT_EQ(large.code, 1);
+    EXPECT_THAT(large.output, HasSubstr("smaller grid"));
     std::ofstream(path("flat.obj")) << "v 0 0 0\nv 1 0 0\nv 2 0 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n";
     const auto flat = lucarne("voxelize " + path("flat.obj") + " -o " + path("v.ply") + " --by area");
     EXPECT_EQ(flat.code, 2);
