@@ -33,7 +33,7 @@ void blend_small(ViewDisc disc, Contribution c) {
     vec2 pixel = low;
     do {
         vec2 d = pixel - e.centre;
-        float weight = disc_weight(ellipse_distance2(e, d)), offset;
+        float weight = dot(e.edge, d) <= 1.0 ? disc_weight(ellipse_distance2(e, d)) : 0.0, offset;
         uint at = pixel_index(pixel);
         // The plane of a disc that is seen edge-on could lie anywhere; that of a widened one reaches over its rim.
         float z = disc.centre.z + clamp(dot(e.slope, d), -2.0 * disc.radius, 2.0 * disc.radius);

@@ -20,6 +20,7 @@ void blend_large(uint id) {
             float z = disc_depth(disc, start, ray), offset;
             vec3 across = start + ray * z - disc.centre;
             float weight = disc_weight(dot(across, across) / (disc.radius * disc.radius));
+            if (!within_edge(disc.edge, across)) weight = 0.0;
             weight = weight_at(pixel_index(pixel), tangent, z, weight, c, offset);
             if (weight > 0.0) contribute(pixel_index(pixel), weight, offset, c);
         }

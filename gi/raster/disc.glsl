@@ -63,6 +63,7 @@ bool view_disc(uint item, PackedSurfel surfel, out ViewDisc disc) {
     disc.normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : toward;
     if (point_front_only != 0u && surfel_has_normal(surfel) && dot(disc.normal, toward) > 0.0) return false;
     if (point_pixels > 0.0) disc.normal = toward;
+    disc.edge = point_pixels > 0.0 ? vec3(0.0) : to_view(surfel_edge(item, surfel));
     disc.extent = disc_reach(disc.radius, disc.normal.z);
     return disc.centre.z + disc.extent > view_forward.w;
 }

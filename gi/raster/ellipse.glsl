@@ -8,6 +8,7 @@ struct Ellipse {
     vec2 centre;  // in pixels, their centres at whole numbers
     float xx, xy, yy;
     vec2 slope;  // m a pixel
+    vec2 edge;   // the line at which the disc ends: it covers offsets with dot(edge, d) <= 1
 };
 
 Ellipse project(ViewDisc disc) {
@@ -21,6 +22,7 @@ Ellipse project(ViewDisc disc) {
     e.slope = -step * disc.normal.xy / facing;
     vec3 along_x = vec3(e.slope.x * tangent + vec2(step.x, 0.0), e.slope.x);
     vec3 along_y = vec3(e.slope.y * tangent + vec2(0.0, step.y), e.slope.y);
+    e.edge = vec2(dot(disc.edge, along_x), dot(disc.edge, along_y));
     float inverse = 1.0 / max(disc.radius * disc.radius, 1e-12);
     e.xx = dot(along_x, along_x) * inverse;
     e.xy = 2.0 * dot(along_x, along_y) * inverse;

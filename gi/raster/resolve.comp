@@ -35,7 +35,7 @@ void main() {
         vec3 world = normal.x * view_right.xyz + normal.y * view_down.xyz + normal.z * view_forward.xyz;
         texel.depth = disc_depth(disc, disc_start(tangent), ray);
         texel.normal = encode_octahedral(world);
-        texel.albedo = surfel.d | (behind && surfel_has_normal(surfel) ? kTexelFromBehind : 0u);
+        texel.albedo = (surfel.d & ~kSurfelHasEdge) | (behind && surfel_has_normal(surfel) ? kTexelFromBehind : 0u);
         texel.material = surfel_material(surfel.b) | packHalf2x16(vec2(0.0, disc.radius));
         list_block(id / kBlockSurfels);
     }

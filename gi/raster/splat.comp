@@ -38,7 +38,7 @@ bool draw_small(ViewDisc disc, uint id) {
         uint taken = 0u, bit = 1u;
         do {
             vec2 d = pixel - e.centre;
-            bool covered = ellipse_distance2(e, d) <= 1.0 || pixel == home;
+            bool covered = ellipse_distance2(e, d) <= 1.0 && dot(e.edge, d) <= 1.0 || pixel == home;
             if (covered && may_take_pixel(pixel, ellipse_key(disc, e, d))) taken |= bit;
             pixel = pixel.x < high.x ? vec2(pixel.x + 1.0, pixel.y) : vec2(low.x, pixel.y + 1.0);
             bit <<= 1;

@@ -3,6 +3,7 @@
 #include "gi/shared/cut_bindings.h"
 #include "octree/tree/footprint.h"
 #include "gi/shared/clip.h"
+#include "gi/shared/edge.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 
@@ -59,6 +60,12 @@ float surfel_lod_area(uint id) {
 
 bool surfel_has_normal(PackedSurfel surfel) { return (surfel.d & kSurfelHasNormal) != 0u; }
 vec3 surfel_normal(PackedSurfel surfel) { return decode_octahedral(surfel.c); }
+// Returns the line at which the surfel's disc ends (edge.h).
+vec3 surfel_edge(uint item, PackedSurfel surfel) {
+    if ((surfel.d & kSurfelHasEdge) == 0u) return vec3(0.0);
+    return edge_of_code(surfel_edge_code(surfel.c, surfel.d), surfel_normal(surfel),
+                        sqrt(surfel_own_area(surfel.b, cut_item_cube(item).w)));
+}
 
 // Returns the area floor of the deepest item of the cut around the surfel. Only surfels of ancestors take more than
 // one step. In an octant where the source has no child the floor is 0; otherwise an outlier there would be drawn as
@@ -81,6 +88,19 @@ float surfel_area_floor(uint item, PackedSurfel surfel) {
 float cut_surfel_radius(uint item, PackedSurfel surfel) {
     if (surfel_is_stray(surfel.b, surfel.d)) return 0.0;
     return surfel_radius(surfel_own_area(surfel.b, cut_item_cube(item).w), surfel_area_floor(item, surfel));
+}
+// Returns the radius of the disc in passes that draw it round: at full resolution it reaches about half a spacing over
+// its line. It should not shade what lies beyond an edge, but has to be closed where it meets the other side.
+float cut_surfel_round_radius(uint item, PackedSurfel surfel) {
+    if (surfel_is_stray(surfel.b, surfel.d)) return 0.0;
+    const float over_line = 0.4;  // roots of the surfel's own share; the line itself stands .1 spacings outside
+    float own = surfel_own_area(surfel.b, cut_item_cube(item).w);
+    vec3 edge = surfel_edge(item, surfel);
+    if (edge != vec3(0.0)) {
+        float reach = inversesqrt(dot(edge, edge)) + over_line * sqrt(own);
+        own = min(own, 3.14159265 / kCoverageRaw * reach * reach);
+    }
+    return surfel_radius(own, surfel_area_floor(item, surfel));
 }
 float cut_surfel_area(uint item, PackedSurfel surfel) {
     if (surfel_is_stray(surfel.b, surfel.d)) return 0.0;

@@ -5,6 +5,7 @@
 #ifndef LUCARNE_GI_SHARED_DISC_H
 #define LUCARNE_GI_SHARED_DISC_H
 
+#include "gi/shared/edge.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/language.h"
 
@@ -27,12 +28,14 @@ LUCARNE_STRUCT(ViewDisc) {
     float radius;
     float extent;  // half the range of depths that it spans, m
     float push;    // by which its rim is pushed back, m of depth (kRimPush)
+    vec3 edge;     // the line at which it ends, 1/m (edge.h); zero: none
 };
 
 // Where a ray meets the plane of a disc.
 LUCARNE_STRUCT(DiscHit) {
     float t;          // parameter of the ray
     float distance2;  // squared distance from the centre, m^2
+    vec3 offset;      // from the centre, m
 };
 
 // Intersects a ray with the plane of a disc whose centre is given relative to the start of the ray. Every
@@ -45,9 +48,10 @@ LUCARNE_FN DiscHit meet_disc(vec3 centre, vec3 normal, vec3 ray) {
     DiscHit hit;
     hit.t = t;
     hit.distance2 = distance2;
+    hit.offset = offset;
     return hit;
 }
-// Returns whether a hit lies on a disc. Half-planes that clip discs at the edges of surfaces belong here.
+// Returns whether a hit lies on a disc without a line (within_edge).
 LUCARNE_FN bool on_disc(DiscHit hit, float radius) {
     return hit.distance2 <= radius * radius;
 }
@@ -76,7 +80,7 @@ LUCARNE_FN uint disc_key(ViewDisc disc, vec3 start, vec3 ray, float near, bool a
     LUCARNE_PRECISE vec3 centre = disc.centre - start;
     DiscHit hit = meet_disc(centre, disc.normal, ray);
     float r2 = disc.radius * disc.radius;
-    bool inside = on_disc(hit, disc.radius);
+    bool inside = on_disc(hit, disc.radius) && within_edge(disc.edge, hit.offset);
     if (!inside && !at_home) return kNoKey;
     float z = disc_depth_within(disc, hit.t);
     if (!(z > near)) return kNoKey;

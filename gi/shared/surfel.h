@@ -15,11 +15,12 @@ namespace lucarne::gi {
 //      area: own share at full resolution as s^2 * 2^(-code/8), s the node's size; 255: unknown (0);
 //      254 without a normal: an outlier (kStrayArea)
 //   c: normal, octahedral, two signed 16-bit fractions
-//   d: albedo, sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
+//   d: albedo, sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal; bit 31: has a line, see edge.h)
 LUCARNE_STRUCT(PackedSurfel) {
     uint a, b, c, d;
 };
 LUCARNE_CONST uint kSurfelHasNormal = 0x40000000u;
+LUCARNE_CONST uint kSurfelHasEdge = 0x80000000u;
 
 // One node of a cut. A surfel's position is origin + size * fraction; metres, relative to the frame's local
 // origin.
@@ -64,6 +65,8 @@ struct Surfel {
     float radius;        ///< m
     float area;          ///< m^2
     uint32_t material;
+    /// The line at which its disc ends (gi/shared/edge.h), 1/m; zero: none.
+    glm::vec3 edge{0.0f};
 };
 }  // namespace lucarne::gi
 #endif

@@ -5,6 +5,7 @@
 
 #include <xxhash.h>
 
+#include "gi/shared/edge.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/area_floor.h"
 #include "io/core/random.h"
@@ -185,6 +186,8 @@ Surfel unpack(std::span<const CutItem> items, const CutItem& item, const PackedS
     surfel.radius = stray ? 0.0f : octree::surfel_radius(own, floor);
     surfel.area = stray ? 0.0f : octree::surfel_area(own, floor);
     surfel.material = surfel_material(packed.b);
+    if (packed.d & kSurfelHasEdge)
+        surfel.edge = edge_of_code(surfel_edge_code(packed.c, packed.d), surfel.normal, std::sqrt(own));
     return surfel;
 }
 

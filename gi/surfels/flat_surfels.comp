@@ -17,8 +17,9 @@ void main() {
     FlatSurfel decoded = FlatSurfel(0.0, 0.0, 0.0, 0.0, 0.0, 0u, 0u, 0u, kNoEdges);
     if (cut_surfel(id, item, surfel)) {
         vec3 position = surfel_position(item, surfel);
-        decoded = FlatSurfel(position.x, position.y, position.z, cut_surfel_radius(item, surfel),
-                             cut_surfel_area(item, surfel), surfel.c, surfel.d, surfel_material(surfel.b), kNoEdges);
+        decoded = FlatSurfel(position.x, position.y, position.z, cut_surfel_round_radius(item, surfel),
+                             cut_surfel_area(item, surfel), surfel.c, surfel.d & ~kSurfelHasEdge,
+                             surfel_material(surfel.b), kNoEdges);
     }
     flat_surfels[id] = decoded;
 }

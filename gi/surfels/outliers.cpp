@@ -174,7 +174,7 @@ uint32_t median_code(std::span<const PackedSurfel> surfels) {
 void hide(PackedSurfel& surfel) {
     set_area_code(surfel, kStrayArea);
     surfel.c = 0;
-    surfel.d &= ~kSurfelHasNormal;
+    surfel.d &= ~(kSurfelHasNormal | kSurfelHasEdge);
 }
 
 }  // namespace

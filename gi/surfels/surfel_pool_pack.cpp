@@ -10,6 +10,7 @@
 #include "gi/surfels/colouring.h"
 #include "gi/surfels/outliers.h"
 #include "gi/surfels/point_colours.h"
+#include "gi/surfels/surfel_edge.h"
 #include "gi/surfels/surfel_pool.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/point_normals.h"
@@ -34,6 +35,8 @@ class Packer {
         area_ = find(io::names::area, 1);
         classification_ = find(io::names::classification, 1);
         scan_ = find(io::names::scan, 1);
+        edge_ = find(io::names::edge_line, 2);
+        if (edge_ && edge_->type != io::ScalarType::u8) edge_ = nullptr;
     }
 
     PackedSurfel pack(const std::byte* record) {
@@ -52,6 +55,7 @@ class Packer {
         const bool has_normal = n != glm::vec3(0.0f);
         surfel.c = has_normal ? encode_octahedral(n) : 0u;
         if (has_normal) surfel.d |= kSurfelHasNormal;
+        if (has_normal && edge_) put_edge(record, n, surfel);
         if (!hidden && surfel_is_stray(surfel.b, surfel.d)) outliers_.push_back(packed_);
         ++packed_;
         return surfel;
@@ -79,14 +83,25 @@ class Packer {
         return steps > 0 ? static_cast<uint32_t>(std::min(steps, 65535.0)) : 0u;
     }
 
+    /// Returns the point's share of the surface, in squares of the source's unit; 0 if unknown.
+    double own_area(const std::byte* record) const {
+        if (!area_ || area_->type != io::ScalarType::u16) return 0;
+        return octree::decode_area(static_cast<uint16_t>(scalar(area_, record)), header_.root.first_size());
+    }
+
     /// Returns the area code: eighths of an octave below the face of the node's cube; 2^(-1/8) is 9 %.
     uint32_t area(const std::byte* record) const {
-        if (!area_ || area_->type != io::ScalarType::u16) return kUnknownArea;
-        const double own =
-            octree::decode_area(static_cast<uint16_t>(scalar(area_, record)), header_.root.first_size());
+        const double own = own_area(record);
         const double octaves = std::log2(cube_.size * cube_.size / own);
         if (!(own > 0) || !std::isfinite(octaves)) return kUnknownArea;
         return static_cast<uint32_t>(std::clamp(std::lround(octaves * 8), 0l, long{kUnknownArea} - 1));
+    }
+
+    void put_edge(const std::byte* record, const glm::vec3& normal, PackedSurfel& surfel) const {
+        const auto line = octree::decode_edge(normal, io::load<octree::EdgeCode>(record + edge_->offset));
+        if (line)
+            pack_edge(line->toward,
+                      line->distance * static_cast<float>(std::sqrt(own_area(record)) / cube_.size), surfel);
     }
 
     uint32_t material(const glm::dvec3& position, const std::byte* record, uint32_t scan) const {
@@ -126,7 +141,7 @@ class Packer {
     const Colouring colouring_;
     const BakedLight* const baked_;
     PointColours colours_;
-    const Attribute *area_, *classification_, *scan_;
+    const Attribute *area_, *classification_, *scan_, *edge_;
     uint32_t packed_ = 0;
     std::vector<uint32_t> outliers_;
 };

@@ -7,6 +7,7 @@
 #include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
 
+#include "gi/shared/edge.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::tracing {
@@ -31,6 +32,26 @@ bool has_disc(const Surfel& s) {
     return s.radius > 0 && std::isfinite(s.radius) && finite(s.position) && finite(s.normal) &&
            glm::dot(s.normal, s.normal) > 0.5f;
 }
+
+namespace {
+
+/// Rejects the hits of a ray beyond the lines of the surfels' discs.
+void reject_beyond_edges(const RTCFilterFunctionNArguments* found) {
+    const auto& surfels = *static_cast<const std::vector<Surfel>*>(found->geometryUserPtr);
+    for (unsigned i = 0; i < found->N; ++i) {
+        if (!found->valid[i]) continue;
+        const Surfel& surfel = surfels[RTCHitN_primID(found->hit, found->N, i)];
+        if (surfel.edge == glm::vec3(0.0f)) continue;
+        const glm::vec3 origin(RTCRayN_org_x(found->ray, found->N, i), RTCRayN_org_y(found->ray, found->N, i),
+                               RTCRayN_org_z(found->ray, found->N, i)),
+            direction(RTCRayN_dir_x(found->ray, found->N, i), RTCRayN_dir_y(found->ray, found->N, i),
+                      RTCRayN_dir_z(found->ray, found->N, i));
+        const glm::vec3 offset = origin - surfel.position + direction * RTCRayN_tfar(found->ray, found->N, i);
+        if (!within_edge(surfel.edge, offset)) found->valid[i] = 0;
+    }
+}
+
+}  // namespace
 
 struct SurfelTracer::Embree {
     RTCDevice device = nullptr;
@@ -72,6 +93,12 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
                     std::copy_n(normal, 3, normals + 3 * i);
                 }
             });
+            if (std::ranges::any_of(tracer->surfels_,
+                                    [](const Surfel& s) { return s.edge != glm::vec3(0.0f); })) {
+                rtcSetGeometryUserData(discs, &tracer->surfels_);
+                rtcSetGeometryIntersectFilterFunction(discs, reject_beyond_edges);
+                rtcSetGeometryOccludedFilterFunction(discs, reject_beyond_edges);
+            }
             rtcCommitGeometry(discs);
             rtcAttachGeometry(embree.scene, discs);
         }

@@ -175,7 +175,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_TRY(check_units(inputs));
     warn_of_differences(inputs);
     const auto added_bytes = [](std::optional<bool> normals) -> uint32_t {
-        return normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
+        return normals ? (*normals ? 7 : 4) : 0;  // normal_oct, area and edge_line
     };
     // The most that may have to be estimated; only the scan tells whether every point has its own normal.
     LUCARNE_ASSIGN(const auto most, wanted_normals(options.normals, inputs, false));

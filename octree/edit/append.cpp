@@ -10,6 +10,7 @@
 #include "octree/edit/edit_plan.h"
 #include "octree/edit/rewrite.h"
 #include "octree/tree/attributes.h"
+#include "octree/tree/edge_line.h"
 #include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {
@@ -26,7 +27,8 @@ class CacheSchema final : public io::PointSource {
         schema_.offset = from.offset;
         schema_.stride = static_cast<uint32_t>(io::position_bytes(from.position));
         for (const auto& a : from.attributes)
-            if (a.name != io::names::scan && a.name != io::names::normal_oct && a.name != io::names::area)
+            if (a.name != io::names::scan && a.name != io::names::normal_oct && a.name != io::names::area &&
+                a.name != io::names::edge_line)
                 schema_.add(name_in_file(a.name), a.type, a.components);
         info_.path = cache.file().path().string();
     }
@@ -46,19 +48,20 @@ class CacheSchema final : public io::PointSource {
 /// Returns the unified schema with the attributes that the cache's build added.
 io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache) {
     io::Schema schema = inputs.schema();
-    for (const auto name : {io::names::normal_oct, io::names::area})
+    for (const auto name : {io::names::normal_oct, io::names::area, io::names::edge_line})
         if (const auto* added = cache.find(name)) schema.add(added->name, added->type, added->components);
     return schema;
 }
 
-/// Returns a pass over the new points in the cache's schema. Normals and areas are marked as not yet
-/// estimated.
+/// Returns a pass over the new points in the cache's schema. Normals, areas and lines are marked as not
+/// yet estimated.
 Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_before,
                   uint64_t batch_bytes) {
     const RecordMap map(inputs.schema(), schema);
     return [&inputs, schema, map, scans_before, batch_bytes](const Visit& visit) -> Result<void> {
         const auto* normal = schema.find(io::names::normal_oct);
         const auto* area = schema.find(io::names::area);
+        const auto* edge = schema.find(io::names::edge_line);
         const auto* scan = schema.find(io::names::scan);
         std::vector<std::byte> records;
         return pass_over_inputs(inputs, batch_bytes)([&](std::span<const std::byte> batch) -> Result<void> {
@@ -67,6 +70,7 @@ Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_
                 std::byte* record = &records[at];
                 if (normal) io::store(record + normal->offset, kNoNormal);
                 if (area) io::store(record + area->offset, kNoArea);
+                if (edge) io::store(record + edge->offset, kNoEdge);
                 // The unifier counts the cache as input 0.
                 const auto input = io::load<uint16_t>(record + scan->offset);
                 io::store(record + scan->offset, static_cast<uint16_t>(scans_before + input - 1));

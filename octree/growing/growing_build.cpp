@@ -25,6 +25,7 @@
 #include "octree/growing/tree_top.h"
 #include "octree/normals/splat_surface.h"
 #include "octree/tree/attributes.h"
+#include "octree/tree/edge_line.h"
 #include "octree/tree/point_normals.h"
 #include "octree/tree/radix_sort.h"
 #include "octree/tree/station_ids.h"
@@ -81,6 +82,7 @@ LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const
     sort_by_code(order, 3 * kMaxLevel);
     const io::Attribute* normal = schema == from ? nullptr : schema.find(io::names::normal_oct);
     const io::Attribute* area = schema == from ? nullptr : schema.find(io::names::area);
+    const io::Attribute* edge = schema == from ? nullptr : schema.find(io::names::edge_line);
     const SplatSurface splats(from);
     LoosePoints points;
     points.records.resize(count * schema.stride);
@@ -96,6 +98,7 @@ LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const
             if (normal)
                 io::store(record + normal->offset, encode_normal(splats.normal(record, surface.normal)));
             if (area) io::store(record + area->offset, encode_area(share, kFace));
+            if (edge) io::store(record + edge->offset, kNoEdge);
             points.codes[i] = order[i].code;
             points.areas[i] = area ? share : 0.0f;
         }

@@ -57,19 +57,6 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
         drop(site, crowding < kRough ? kSilhouette : kCurtain);
 }
 
-/// Narrows the discs at outer edges, such as that of a window's reveal. There a disc of the usual size would
-/// reach one and a half spacings into the air and shade what lies beyond. In a corner it ends behind the
-/// other side, and its size keeps the corner closed. The station tells which of the two a crease is.
-void narrow_at_edges(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
-    for (const SideNormal& side : surface.sides) {
-        const glm::dvec3& ray = ray_of_site[side.site];
-        const double facing = glm::dot(glm::dvec3(side.normal), ray);
-        if (!(std::abs(facing) > kGrazing * glm::length(ray)) || side.rises == (facing > 0)) continue;
-        float& area = surface.areas[side.site];
-        area = std::min(area, side.edge_area);
-    }
-}
-
 /// Drops the sides of creases that turn far and have no station.
 void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
     std::erase_if(surface.sides, [&](const SideNormal& side) {
@@ -113,17 +100,12 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
     neighbours.drop_indices();
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
-    if (!rays.empty()) {
-        drop_curtains(surface, rays);
-        narrow_at_edges(surface, rays);
-    }
+    if (!rays.empty()) drop_curtains(surface, rays);
     drop_doubtful_sides(surface, rays);
     ChunkOrientation orientation;
     if (options.normals) {
         orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays));
     } else {
-        std::fill(surface.normals.begin(), surface.normals.end(), glm::vec3(0.0f));
-        surface.sides.clear();
         orientation.components.assign(neighbours.site_count(), 0);
     }
     return ChunkEstimate{std::move(neighbours), std::move(surface), std::move(orientation)};
@@ -146,17 +128,24 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     normals.normals.resize(points);
     normals.areas.resize(points);
     normals.components.resize(points);
+    normals.edges.resize(points);
     auto side = estimate.surface.sides.begin();
     for (uint32_t site = 0; site < sites; ++site) {
         const auto members = estimate.neighbours.members(site);
         glm::vec3 normal = estimate.surface.normals[site];
+        const float area = estimate.surface.areas[site] / static_cast<float>(members.size());
+        CreaseEdge edge;
         for (; side != estimate.surface.sides.end() && side->site == site; ++side)
-            if (normal != glm::vec3(0.0f))
-                normal = glm::dot(side->normal, normal) < 0 ? -side->normal : side->normal;
+            if (normal != glm::vec3(0.0f)) {
+                const bool turned = glm::dot(side->normal, normal) < 0;
+                normal = turned ? -side->normal : side->normal;
+                edge = {encode_edge(normal, {side->toward, side->distance / std::sqrt(area)}),
+                        side->rises != turned};
+            }
         for (const uint32_t point : members) {
             normals.normals[point] = normal;
-            normals.areas[point] =
-                in_squares(estimate.surface.areas[site] / static_cast<float>(members.size()), unit);
+            normals.edges[point] = edge;
+            normals.areas[point] = in_squares(area, unit);
             normals.components[point] = estimate.orientation.components[site];
         }
     }

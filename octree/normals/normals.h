@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "io/points.h"
+#include "octree/tree/edge_line.h"
 
 namespace lucarne::octree {
 
@@ -48,7 +49,7 @@ struct NormalOptions {
     std::vector<glm::dvec3> stations;
     uint64_t memory = uint64_t{1} << 30;  ///< bytes that this stage may use in total
     unsigned threads = 0;
-    bool normals = true;  ///< false: only areas (the input has its own normals)
+    bool normals = true;  ///< false: the normals are not oriented, because the input has its own
     /// Length of the unit square in which areas are returned. Floats can represent the squares of neither
     /// 1e30 nor 1e-30, so for clouds of unknown size the caller passes the cloud's own extent.
     double area_unit = 1;
@@ -58,10 +59,19 @@ struct NormalOptions {
 /// is so small that it is stored as the smallest area that a cache can represent.
 inline constexpr float kStrayArea = 1e-30f;
 
+/// The line to which a point's side of a crease reaches.
+struct CreaseEdge {
+    EdgeCode code = kNoEdge;  ///< for the point's normal and area
+    /// Beyond the line the surface turns to the side of the point's normal: a corner, where discs end behind
+    /// the other side and need no line. Else it is an outer edge.
+    bool rises = false;
+};
+
 /// The result for one chunk, in the order of its positions.
 struct ChunkNormals {
     std::vector<glm::vec3> normals;  ///< unit; zero: no stable plane
     std::vector<float> areas;  ///< share of the surface (area_unit squared), 0 if unknown, or kStrayArea
+    std::vector<CreaseEdge> edges;
     std::vector<uint32_t> components;  ///< the orientation component of the chunk to which each point belongs
 };
 

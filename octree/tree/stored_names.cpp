@@ -16,7 +16,8 @@ bool is_normal(const io::Attribute& attribute) {
 
 std::string_view reserved_name(std::string_view name) {
     while (name.ends_with(kForeign)) name.remove_suffix(kForeign.size());
-    for (const auto ours : {io::names::normal_oct, io::names::area, io::names::scan, io::names::normal})
+    for (const auto ours :
+         {io::names::normal_oct, io::names::area, io::names::edge_line, io::names::scan, io::names::normal})
         if (name == ours) return name;
     return {};
 }

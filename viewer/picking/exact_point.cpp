@@ -121,7 +121,7 @@ std::optional<PointField> field_of(const octree::SourceHeader& header, const io:
                                    const std::byte* record) {
     const std::byte* at = record + attribute.offset;
     const bool bytes = attribute.type == io::ScalarType::u8;
-    if (attribute.name == io::names::area) return std::nullopt;
+    if (attribute.name == io::names::area || attribute.name == io::names::edge_line) return std::nullopt;
     if (attribute.name == io::names::normal_oct && bytes && attribute.components == 3) {
         const auto normal = octree::decode_normal(io::load<octree::NormalCode>(at));
         if (!normal) return PointField{std::string(kEstimatedNormal), "none"};

@@ -140,7 +140,9 @@ HWY_INLINE void blend_small(const BlendedDiscs& discs, size_t lane, const PixelR
               xy = hn::Set(df, discs.xy[lane]), slope_x = hn::Set(df, discs.slope_x[lane]),
               z = hn::Set(df, discs.z[lane]), least = hn::Set(df, -2.0f * discs.radius[lane]),
               most = hn::Set(df, 2.0f * discs.radius[lane]),
-              end = hn::Set(df, static_cast<float>(discs.x1[lane]));
+              end = hn::Set(df, static_cast<float>(discs.x1[lane])), edge_x = hn::Set(df, discs.edge_x[lane]),
+              one = hn::Set(df, 1.0f);
+    const bool lined = discs.edge_x[lane] != 0 || discs.edge_y[lane] != 0;
     for (int row = discs.y0[lane]; row <= discs.y1[lane]; ++row) {
         const float dy = static_cast<float>(row) - discs.y[lane];
         const Row vdy = hn::Set(df, dy), from_y = hn::Set(df, discs.yy[lane] * dy * dy),
@@ -149,8 +151,12 @@ HWY_INLINE void blend_small(const BlendedDiscs& discs, size_t lane, const PixelR
             const Row place = hn::Iota(df, static_cast<float>(column)), dx = hn::Sub(place, x);
             const Row distance2 = hn::Add(hn::Mul(dx, hn::Add(hn::Mul(xx, dx), hn::Mul(xy, vdy))), from_y);
             const Row along = hn::Min(hn::Max(hn::Add(hn::Mul(slope_x, dx), slope_y), least), most);
-            contribute(c, distance2, hn::Add(z, along), hn::Le(place, end),
-                       static_cast<size_t>(column - rect.x0), tile.rows[row - rect.y0]);
+            auto inside = hn::Le(place, end);
+            if (lined)
+                inside = hn::And(
+                    inside, hn::Le(hn::Add(hn::Mul(edge_x, dx), hn::Set(df, discs.edge_y[lane] * dy)), one));
+            contribute(c, distance2, hn::Add(z, along), inside, static_cast<size_t>(column - rect.x0),
+                       tile.rows[row - rect.y0]);
         }
     }
 }
@@ -169,7 +175,8 @@ HWY_INLINE void blend_large(const ViewDisc& disc, const Contribution& c, const D
         for (int column = x0; column < x1; column += kRowLanes) {
             const Meeting m = meet(disc, view, tangent, column);
             const Row place = hn::Iota(df, static_cast<float>(column)), z = in_disc(disc, m.z);
-            contribute(c, hn::Div(m.distance2, row_of(r2)), z, hn::Lt(place, row_of(static_cast<float>(x1))),
+            contribute(c, hn::Div(m.distance2, row_of(r2)), z,
+                       hn::And(hn::Lt(place, row_of(static_cast<float>(x1))), hn::Le(m.beyond, row_of(1.0f))),
                        static_cast<size_t>(column - rect.x0), tile.rows[row - rect.y0]);
         }
     }

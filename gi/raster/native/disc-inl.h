@@ -10,10 +10,12 @@
 #endif
 
 #include "gi/raster/disc_view.h"
+#include "gi/raster/native/area_roots.h"
 #include "gi/raster/native/large_disc.h"
 #include "gi/raster/native/tiles.h"
 #include "gi/raster/native/vectors-inl.h"
 #include "gi/shared/disc.h"
+#include "gi/shared/edge.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/surfel.h"
 
@@ -66,7 +68,7 @@ HWY_INLINE F view_scale(const DiscView& view, F depth) {
 
 /// Several discs, see ViewDisc.
 struct Discs {
-    V3 centre, normal;
+    V3 centre, normal, edge;
     F radius, extent, push;
 };
 
@@ -121,6 +123,36 @@ HWY_INLINE Mask turn_discs(const DiscView& view, U normals, U flags, Discs& disc
     return hn::And(drawn, hn::Gt(add(discs.centre.z, discs.extent), set(view.forward.w)));
 }
 
+/// Returns the lines at which discs end, see edge_of_code(). `b`, `normals`, `d`: words of the surfels;
+/// `size`: of their cube.
+HWY_INLINE V3 disc_edges(const DiscView& view, U b, U normals, U d, float size) {
+    const F zero = hn::Zero(Floats()), one = set(1.0f);
+    const Mask lined = hn::RebindMask(Floats(), hn::TestBit(d, word(kSurfelHasEdge)));
+    if (view.size.pixels > 0 || hn::AllFalse(Floats(), lined)) return {zero, zero, zero};
+    const auto bits = [&](U from, uint32_t mask) { return hn::And(from, word(mask)); };
+    const U code = hn::Or(
+        hn::Or(bits(normals, 15u), bits(hn::ShiftRight<12>(normals), 240u)),
+        hn::Or(hn::Or(hn::ShiftLeft<8>(bits(d, 3u)), bits(d, 0xc00u)), bits(hn::ShiftRight<8>(d), 0x3000u)));
+    const F turn = over(to_float(hn::ShiftRight<7>(code)), set(kEdgeTurnSteps)), two = set(2.0f);
+    const auto from = [&](float v) { return hn::Abs(sub(turn, set(v))); };
+    const F u = sub(from(2), one),
+            v = hn::IfThenElse(hn::Lt(turn, two), sub(one, from(1)), sub(from(3), one));
+    const V3 n = decode_octahedral(normals), sizes{hn::Abs(n.x), hn::Abs(n.y), hn::Abs(n.z)};
+    const auto rest = [&](F of_u, F of_v, F of_rest) {
+        return over(hn::Neg(add(mul(of_u, u), mul(of_v, v))), of_rest);
+    };
+    V3 toward{u, v, rest(n.x, n.y, n.z)};
+    toward = choose(hn::Ge(sizes.y, sizes.z), {v, rest(n.z, n.x, n.y), u}, toward);
+    toward = choose(hn::And(hn::Ge(sizes.x, sizes.y), hn::Ge(sizes.x, sizes.z)), {rest(n.y, n.z, n.x), u, v},
+                    toward);
+    const auto area = hn::BitCast(Ints(), bits(hn::ShiftRight<16>(b), 255u));
+    const F root = mul(set(size), hn::GatherIndex(Floats(), area_roots().data(), area));
+    const F distance = mul(over(to_float(bits(code, kMostEdgeDistance)), set(kEdgeDistanceSteps)), root);
+    const F scale = over(over(one, hn::Sqrt(dot(toward, toward))), distance);
+    return choose(hn::And(lined, hn::Gt(distance, zero)), to_view(view, scaled(toward, scale)),
+                  {zero, zero, zero});
+}
+
 static_assert(HWY_MAX_BYTES / 4 <= HostSurfels::kPadding);
 HWY_INLINE Mask are_small(const DiscView& view, const Discs& discs) {
     const F most =
@@ -133,6 +165,7 @@ struct Ellipses {
     F x, y;
     F xx, xy, yy;
     F slope_x, slope_y;
+    F edge_x, edge_y;
 };
 
 HWY_INLINE Ellipses project(const DiscView& view, const Discs& discs) {
@@ -152,6 +185,8 @@ HWY_INLINE Ellipses project(const DiscView& view, const Discs& discs) {
     e.slope_y = over(mul(hn::Neg(step_y), discs.normal.y), facing);
     const V3 along_x{add(mul(e.slope_x, tangent_x), step_x), mul(e.slope_x, tangent_y), e.slope_x};
     const V3 along_y{mul(e.slope_y, tangent_x), add(mul(e.slope_y, tangent_y), step_y), e.slope_y};
+    e.edge_x = dot(discs.edge, along_x);
+    e.edge_y = dot(discs.edge, along_y);
     const F inverse = over(set(1.0f), hn::Max(mul(discs.radius, discs.radius), set(1e-12f)));
     e.xx = mul(dot(along_x, along_x), inverse);
     e.xy = mul(mul(set(2.0f), dot(along_x, along_y)), inverse);
@@ -167,7 +202,7 @@ HWY_INLINE F determinant(const Ellipses& e) {
 struct EllipseLanes {
     static constexpr size_t kMost = HWY_MAX_BYTES / 4;
     alignas(64) float x[kMost], y[kMost], xx[kMost], xy[kMost], yy[kMost], slope_x[kMost], slope_y[kMost],
-        z[kMost];
+        edge_x[kMost], edge_y[kMost], z[kMost];
     alignas(64) int32_t x0[kMost], y0[kMost], x1[kMost], y1[kMost];
 };
 HWY_INLINE void store(const Ellipses& e, F z, F x0, F y0, F x1, F y1, EllipseLanes& lanes) {
@@ -180,6 +215,8 @@ HWY_INLINE void store(const Ellipses& e, F z, F x0, F y0, F x1, F y1, EllipseLan
     hn::Store(e.yy, df, lanes.yy);
     hn::Store(e.slope_x, df, lanes.slope_x);
     hn::Store(e.slope_y, df, lanes.slope_y);
+    hn::Store(e.edge_x, df, lanes.edge_x);
+    hn::Store(e.edge_y, df, lanes.edge_y);
     hn::Store(z, df, lanes.z);
     hn::Store(to_int(di, x0), di, lanes.x0);
     hn::Store(to_int(di, y0), di, lanes.y0);
@@ -194,6 +231,7 @@ struct BlockDiscs {
     alignas(64) float x[kRoom], y[kRoom], z[kRoom], radius[kRoom];
     alignas(64) uint32_t b[kRoom], c[kRoom], d[kRoom];  ///< words of the packed surfels
     alignas(64) uint32_t id[kRoom];
+    float size;  ///< of the block's cube, m
     size_t count;
 };
 
@@ -244,6 +282,7 @@ HWY_INLINE void find_discs(const CutMemory& cut, const DiscView& view, const Pix
         keep_words(hn::Iota(du, block * kBlockSurfels + i), found.id);
         count += more;
     }
+    found.size = item.size;
     found.count = count;
 }
 
@@ -252,25 +291,29 @@ HWY_INLINE Mask load_discs(const BlockDiscs& from, size_t at, const DiscView& vi
     const Floats df;
     discs.centre = {hn::LoadU(df, from.x + at), hn::LoadU(df, from.y + at), hn::LoadU(df, from.z + at)};
     discs.radius = hn::LoadU(df, from.radius + at);
-    const Mask seen =
-        turn_discs(view, hn::LoadU(Words(), from.c + at), hn::LoadU(Words(), from.d + at), discs);
+    const U c = hn::LoadU(Words(), from.c + at), d = hn::LoadU(Words(), from.d + at);
+    const Mask seen = turn_discs(view, c, d, discs);
+    discs.edge = disc_edges(view, hn::LoadU(Words(), from.b + at), c, d, from.size);
     return hn::And(seen, hn::FirstN(df, from.count - at));
 }
 
 /// Calls draw(lane, disc) for the lanes that are large discs.
 template <class Draw>
 HWY_INLINE void each_large(uint32_t large, const Discs& discs, const Draw& draw) {
-    alignas(64) float at[9][HWY_MAX_BYTES / 4];
-    const F values[9] = {discs.centre.x, discs.centre.y, discs.centre.z, discs.normal.x, discs.normal.y,
-                         discs.normal.z, discs.radius,   discs.extent,   discs.push};
-    for (int k = 0; k < 9; ++k) hn::Store(values[k], Floats(), at[k]);
+    constexpr int kValues = 12;
+    alignas(64) float at[kValues][HWY_MAX_BYTES / 4];
+    const F values[kValues] = {discs.centre.x, discs.centre.y, discs.centre.z, discs.normal.x,
+                               discs.normal.y, discs.normal.z, discs.radius,   discs.extent,
+                               discs.push,     discs.edge.x,   discs.edge.y,   discs.edge.z};
+    for (int k = 0; k < kValues; ++k) hn::Store(values[k], Floats(), at[k]);
     for (; large; large &= large - 1) {
         const auto lane = static_cast<size_t>(std::countr_zero(large));
         draw(lane, ViewDisc{{at[0][lane], at[1][lane], at[2][lane]},
                             {at[3][lane], at[4][lane], at[5][lane]},
                             at[6][lane],
                             at[7][lane],
-                            at[8][lane]});
+                            at[8][lane],
+                            {at[9][lane], at[10][lane], at[11][lane]}});
     }
 }
 
@@ -293,6 +336,7 @@ struct Meeting {
     Row z;          ///< not clamped
     Row distance2;  ///< from the disc's centre, m^2
     Row slope;
+    Row beyond;  ///< over 1: beyond the line at which the disc ends (within_edge)
 };
 HWY_INLINE Meeting meet(const ViewDisc& disc, const DiscView& view, float tangent_y, int column) {
     const RowFloats df;
@@ -310,6 +354,8 @@ HWY_INLINE Meeting meet(const ViewDisc& disc, const DiscView& view, float tangen
     const Row ox = hn::Sub(hn::Mul(ray_x, m.z), x), oy = hn::Sub(hn::Mul(ray_y, m.z), y),
               oz = hn::Sub(m.z, z);
     m.distance2 = hn::Add(hn::Add(hn::Mul(ox, ox), hn::Mul(oy, oy)), hn::Mul(oz, oz));
+    m.beyond = hn::Add(hn::Add(hn::Mul(row(disc.edge.x), ox), hn::Mul(row(disc.edge.y), oy)),
+                       hn::Mul(row(disc.edge.z), oz));
     return m;
 }
 /// Limits depths to those that the disc spans.

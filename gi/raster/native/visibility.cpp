@@ -64,7 +64,8 @@ HWY_INLINE void draw_small(const SmallDiscs& discs, size_t lane, uint32_t id, co
     const auto x = hn::Set(df, discs.x[lane]), xx = hn::Set(df, discs.xx[lane]),
                xy = hn::Set(df, discs.xy[lane]), slope_x = hn::Set(df, discs.slope_x[lane]),
                push = hn::Set(df, discs.push[lane]), z = hn::Set(df, discs.z[lane]), one = hn::Set(df, 1.0f),
-               home = hn::Set(df, discs.home_x[lane]);
+               home = hn::Set(df, discs.home_x[lane]), edge_x = hn::Set(df, discs.edge_x[lane]);
+    const bool lined = discs.edge_x[lane] != 0 || discs.edge_y[lane] != 0;
     const auto end = hn::Set(df, static_cast<float>(discs.x1[lane]));
     for (int row = discs.y0[lane]; row <= discs.y1[lane]; ++row) {
         const float y = static_cast<float>(row), dy = y - discs.y[lane];
@@ -77,6 +78,9 @@ HWY_INLINE void draw_small(const SmallDiscs& discs, size_t lane, uint32_t id, co
             const auto distance2 = hn::Add(hn::Mul(dx, hn::Add(hn::Mul(xx, dx), hn::Mul(xy, vdy))), from_y);
             const auto inside = hn::Le(distance2, one);
             auto covered = inside;
+            if (lined)
+                covered = hn::And(
+                    covered, hn::Le(hn::Add(hn::Mul(edge_x, dx), hn::Set(df, discs.edge_y[lane] * dy)), one));
             if (home_row) covered = hn::Or(covered, hn::Eq(place, home));
             covered = hn::And(covered, hn::Le(place, end));
             const auto along = hn::Add(hn::Add(hn::Mul(slope_x, dx), slope), hn::Mul(push, distance2));
@@ -100,7 +104,7 @@ HWY_INLINE void draw_large(const ViewDisc& disc, uint32_t id, const DiscView& vi
         for (int column = x0; column < x1; column += kRowLanes) {
             const Meeting m = meet(disc, view, tangent, column);
             const Row place = hn::Iota(df, static_cast<float>(column)), z = in_disc(disc, m.z);
-            const auto inside = hn::Le(m.distance2, row_of(r2));
+            const auto inside = hn::And(hn::Le(m.distance2, row_of(r2)), hn::Le(m.beyond, row_of(1.0f)));
             auto covered = inside;
             if (row == box->home.y)
                 covered = hn::Or(covered, hn::Eq(place, row_of(static_cast<float>(box->home.x))));
@@ -237,10 +241,11 @@ void resolve_row(const CutMemory& cut, const DiscView& view, int x, int y, int c
             hn::IfThenElseZero(hn::RebindMask(Words(), hn::And(behind, turned)), word(kTexelFromBehind));
         const U material = hn::Or(hn::ShiftRight<24>(packed.b), hn::ShiftLeft<16>(half_bits(discs.radius)));
         alignas(64) uint32_t words[4 * HWY_MAX_BYTES / 4];
-        hn::StoreInterleaved4(hn::IfThenElseZero(taken, hn::BitCast(Words(), depth)),
-                              hn::IfThenElseZero(taken, encode_octahedral(to_world(view, normal))),
-                              hn::IfThenElseZero(taken, hn::Or(packed.d, from_behind)),
-                              hn::IfThenElseZero(taken, material), Words(), words);
+        hn::StoreInterleaved4(
+            hn::IfThenElseZero(taken, hn::BitCast(Words(), depth)),
+            hn::IfThenElseZero(taken, encode_octahedral(to_world(view, normal))),
+            hn::IfThenElseZero(taken, hn::Or(hn::AndNot(word(kSurfelHasEdge), packed.d), from_behind)),
+            hn::IfThenElseZero(taken, material), Words(), words);
         std::memcpy(texels + at, words,
                     sizeof(GBufferTexel) * static_cast<size_t>(std::min(lanes, count - at)));
     }

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include <glm/geometric.hpp>
+
 #include "octree/tree/attributes.h"
 
 namespace lucarne::octree {
@@ -14,14 +16,29 @@ constexpr double kFace = 1;  ///< areas are in faces of the root cube before it 
 io::Schema with_estimates(io::Schema schema, bool normals) {
     if (normals) schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
     schema.add(std::string(io::names::area), io::ScalarType::u16);
+    schema.add(std::string(io::names::edge_line), io::ScalarType::u8, 2);
     return schema;
 }
 
 RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals)
-    : chunks_(chunks), surface_(surface), schema_(chunks.schema()), splats_(chunks_.schema()) {
-    if (surface && !schema_.find(io::names::area)) schema_ = with_estimates(std::move(schema_), normals);
-    normal_ = schema_.find(io::names::normal_oct);
-    area_ = schema_.find(io::names::area);
+    : chunks_(chunks),
+      surface_(surface),
+      schema_(surface && !chunks.schema().find(io::names::area) ? with_estimates(chunks.schema(), normals)
+                                                                : chunks.schema()),
+      splats_(chunks_.schema()),
+      drawn_normals_(schema_),
+      normal_(schema_.find(io::names::normal_oct)),
+      area_(schema_.find(io::names::area)),
+      edge_(schema_.find(io::names::edge_line)) {}
+
+void RecordLoader::put_edge(const SurfaceStore::Point& found, std::byte* record) const {
+    EdgeCode code = found.edge.code;
+    if (code != kNoEdge) {
+        const glm::vec3 drawn = drawn_normals_.of(record);
+        const bool rises = found.edge.rises == (glm::dot(drawn, found.normal) > 0);
+        code = rises ? kNoEdge : rebased_edge(code, {found.normal, found.area}, {drawn, area(record)});
+    }
+    io::store(record + edge_->offset, code);
 }
 
 Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, uint64_t count) const {
@@ -40,6 +57,7 @@ Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, 
             io::store(record + normal_->offset, encode_normal(splats_.normal(record, found[i].normal)));
         const float area = splats_.area(record, found[i].area, face);
         if (!in_place || area > 0) io::store(record + area_->offset, encode_area(area, kFace));
+        if (edge_) put_edge(found[i], record);
     }
     return records;
 }

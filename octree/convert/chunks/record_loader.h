@@ -4,15 +4,16 @@
 
 #include "octree/convert/chunks/surface_store.h"
 #include "octree/normals/splat_surface.h"
+#include "octree/tree/point_normals.h"
 
 namespace lucarne::octree {
 
-/// Adds the estimated attributes to the input's schema: areas and, if `normals`, normals.
+/// Adds the estimated attributes to the input's schema: areas, lines at edges and, if `normals`, normals.
 io::Schema with_estimates(io::Schema schema, bool normals);
 
 /// Loads the records of chunks as the cache will store them: the input's, followed by the estimates. In an
-/// update the chunks already have the cache's whole schema; then the estimates are written in place: areas of
-/// all points, normals of points that have none yet.
+/// update the chunks already have the cache's whole schema; then the estimates are written in place: areas
+/// and lines of all points, normals of points that have none yet.
 class RecordLoader {
  public:
     /// `surface` is null if neither normals nor areas were estimated. `normals`: whether its normals are
@@ -27,16 +28,17 @@ class RecordLoader {
     Place place(const std::byte* record) const { return root().place(io::position_of(schema_, record)); }
     /// The point's share of the surface, in faces of the root cube before it was doubled; 0 if unknown.
     float area(const std::byte* record) const;
-    /// Where the records hold the estimates; null if nothing was estimated.
-    const io::Attribute* estimated_normal() const { return normal_; }
-    const io::Attribute* estimated_area() const { return area_; }
 
  private:
+    /// Writes the line of a point whose normal and area have been written.
+    void put_edge(const SurfaceStore::Point& found, std::byte* record) const;
+
     const ChunkStore& chunks_;
     const SurfaceStore* surface_;
     io::Schema schema_;
     SplatSurface splats_;
-    const io::Attribute *normal_ = nullptr, *area_ = nullptr;
+    PointNormals drawn_normals_;
+    const io::Attribute *normal_ = nullptr, *area_ = nullptr, *edge_ = nullptr;
 };
 
 }  // namespace lucarne::octree

@@ -126,6 +126,7 @@ Result<void> SurfaceStore::keep(size_t chunk, uint64_t count, const ChunkNormals
         if (points[i].area > kStrayArea)
             ++areas_[static_cast<int>(std::floor(kAreaBins * std::log2(points[i].area)))];
         if (i < found.components.size()) points[i].component = found.components[i];
+        if (i < found.edges.size()) points[i].edge = found.edges[i];
     }
     const auto bytes = std::as_bytes(std::span(points));
     sums_[chunk] = format::checksum(bytes);
@@ -177,8 +178,10 @@ Result<std::vector<SurfaceStore::Point>> SurfaceStore::load(size_t chunk, uint64
             if (point.normal == glm::vec3(0.0f)) point.area = std::min(point.area, most_stray_area_);
     if (chunk >= signs_.size()) return points;
     for (auto& point : points)
-        if (point.component < signs_[chunk].size() && signs_[chunk][point.component] < 0)
+        if (point.component < signs_[chunk].size() && signs_[chunk][point.component] < 0) {
             point.normal = -point.normal;
+            point.edge.rises = !point.edge.rises;
+        }
     return points;
 }
 

@@ -15,9 +15,11 @@ class SurfaceStore {
         glm::vec3 normal{0.0f};  ///< as estimated, before its component's sign
         float area = 0;          ///< in faces of the root cube before it was doubled; 0: unknown
         uint32_t component = 0;
+        CreaseEdge edge;
+        uint8_t unused = 0;  ///< in place of padding, which checksums would include
     };
     struct Settings {
-        bool normals = true;  ///< false: the input's are kept, only areas are estimated
+        bool normals = true;  ///< false: the input's are kept
         uint32_t neighbours = 16;
         NeighbourSearch search = NeighbourSearch::leaf;
         unsigned threads = 0;
@@ -37,7 +39,8 @@ class SurfaceStore {
     /// Flips the normals of one orientation component of a chunk.
     void turn(size_t chunk, uint32_t component);
 
-    /// Returns the points [first, first + count) of a chunk, with their normals oriented.
+    /// Returns the points [first, first + count) of a chunk, with their normals oriented (if
+    /// Settings::normals).
     Result<std::vector<Point>> load(size_t chunk, uint64_t first, uint64_t count) const;
 
  private:

@@ -14,9 +14,7 @@ namespace lucarne::octree {
 class Emitter {
  public:
     explicit Emitter(const RecordLoader& loader)
-        : stride_(loader.schema().stride),
-          rounding_(loader.estimated_normal(), loader.estimated_area(), stride_),
-          encoder_(loader.schema()) {}
+        : stride_(loader.schema().stride), rounding_(loader.schema()), encoder_(loader.schema()) {}
 
     /// Appends the settled child's payload and its entry, whose offset is relative to the start of `payload`.
     /// `record(i)` returns the i-th record of the child's sample.

@@ -13,15 +13,35 @@ constexpr size_t kFewest = 64;  ///< fewer differences have no meaningful median
 
 }  // namespace
 
-SurfaceRounding::SurfaceRounding(const io::Attribute* normals, const io::Attribute* areas, uint32_t stride)
-    : stride_(stride) {
-    if (normals) normal_at_ = normals->offset;
-    if (areas) area_at_ = areas->offset;
+SurfaceRounding::SurfaceRounding(const io::Schema& schema) : drawn_normals_(schema), stride_(schema.stride) {
+    const auto at = [&](std::string_view name) -> std::optional<uint32_t> {
+        if (const auto* found = schema.find(name)) return found->offset;
+        return std::nullopt;
+    };
+    normal_at_ = at(io::names::normal_oct);
+    area_at_ = at(io::names::area);
+    edge_at_ = area_at_ ? at(io::names::edge_line) : std::nullopt;
 }
 
 void SurfaceRounding::round(std::span<std::byte> records) {
+    const auto each_edge = [&](const auto& use) {
+        if (!edge_at_) return;
+        for (size_t at = 0; at < records.size(); at += stride_)
+            if (io::load<EdgeCode>(&records[at + *edge_at_]) != kNoEdge) use(&records[at]);
+    };
+    bases_.clear();
+    each_edge([&](const std::byte* record) { bases_.push_back(base_of(record)); });
     if (normal_at_) round_normals(records);
     if (area_at_) round_areas(records);
+    auto before = bases_.cbegin();
+    each_edge([&](std::byte* record) {
+        const auto code = io::load<EdgeCode>(record + *edge_at_);
+        io::store(record + *edge_at_, rebased_edge(code, *before++, base_of(record)));
+    });
+}
+
+EdgeBase SurfaceRounding::base_of(const std::byte* record) const {
+    return {drawn_normals_.of(record), decode_area(io::load<uint16_t>(record + *area_at_), 1)};
 }
 
 int SurfaceRounding::step(std::vector<uint32_t>& differences, int most) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "io/points.h"
+#include "octree/tree/edge_line.h"
+#include "octree/tree/point_normals.h"
 
 namespace lucarne::octree {
 
@@ -14,9 +16,9 @@ namespace lucarne::octree {
 /// every bit.
 class SurfaceRounding {
  public:
-    /// `normals`, `areas`: the estimated attributes of the schema; null if there are none.
-    SurfaceRounding(const io::Attribute* normals, const io::Attribute* areas, uint32_t stride);
-    /// Rounds the records of a node, which must be in order along the Morton curve.
+    explicit SurfaceRounding(const io::Schema& schema);
+    /// Rounds the records of a node, which must be in order along the Morton curve. The lines of points at
+    /// edges stay where they are.
     void round(std::span<std::byte> records);
 
  private:
@@ -25,9 +27,13 @@ class SurfaceRounding {
     /// Returns the step for these differences, a power of two up to `most`. Reorders the differences.
     static int step(std::vector<uint32_t>& differences, int most);
 
-    std::optional<uint32_t> normal_at_, area_at_;  ///< in the record
+    EdgeBase base_of(const std::byte* record) const;  ///< areas in faces of the first root cube
+
+    PointNormals drawn_normals_;
+    std::optional<uint32_t> normal_at_, area_at_, edge_at_;  ///< in the record
     uint32_t stride_;
     std::vector<uint32_t> differences_;
+    std::vector<EdgeBase> bases_;  ///< of the points with lines, in order
 };
 
 }  // namespace lucarne::octree

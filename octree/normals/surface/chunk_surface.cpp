@@ -45,8 +45,10 @@ constexpr double kVerySparse = 24, kFarWindow = 4;
 constexpr float kCrowded = 8;
 /// A very sparse site that is more crowded than this is an outlier.
 constexpr float kMostCrowded = 64;
-/// At an outer edge a disc may reach this many spacings over it.
-constexpr float kOverEdge = 0.5f;
+/// A disc at an outer edge ends that many spacings beyond the line where the two planes meet, and as much
+/// farther as the other plane is rough, so that the discs of both sides meet there; but at most kOverEdge
+/// spacings.
+constexpr float kBeyondEdge = 0.1f, kOverEdge = 0.5f;
 constexpr size_t kStepSites = 256;  ///< sites whose steps are compared: a piece of the Morton curve
 
 /// The median distance from one site to the next along the Morton curve, for each kStepSites sites.
@@ -69,12 +71,14 @@ std::vector<double> median_steps(const ChunkNeighbours& neighbours) {
     return medians;
 }
 
-/// Returns the area with which the disc of a point reaches kOverEdge over the line where its side ends.
-float edge_area(const Side& side, float spacing) {
+/// Returns a site's side of a crease with the line where its disc ends if the crease is an outer edge.
+SideNormal side_at(uint32_t site, const Side& side, float spacing) {
     const auto n = glm::vec3(side.plane.normal);
-    const float slope = glm::length(side.other - n * glm::dot(side.other, n));
-    const float radius = std::abs(side.offset) / slope + kOverEdge * spacing;
-    return std::numbers::pi_v<float> / kCoverageRaw * radius * radius;
+    const glm::vec3 across = side.other - n * glm::dot(side.other, n);
+    const float slope = glm::length(across);  // over .4: planes at a crease meet at 24 degrees and more
+    const float beyond = std::min(kBeyondEdge * spacing + side.roughness / slope, kOverEdge * spacing);
+    return {site, n, side.rises, across / (side.offset < 0 ? -slope : slope),
+            std::abs(side.offset) / slope + beyond};
 }
 
 /// Estimates the surface at one site after another; one per thread.
@@ -178,8 +182,7 @@ class SiteEstimator {
             if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
         }
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
-        if (whole != glm::vec3(0.0f))
-            sides_.push_back({site, fit.normal, side->rises, edge_area(*side, spacing)});
+        if (whole != glm::vec3(0.0f)) sides_.push_back(side_at(site, *side, spacing));
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
         return 0;

@@ -33,7 +33,8 @@ struct SideNormal {
     uint32_t site = 0;
     glm::vec3 normal{0.0f};  ///< the sign is arbitrary
     bool rises = false;      ///< beyond the crease the surface turns to the side of `normal`
-    float edge_area = 0;     ///< largest area of the site if the crease is an outer edge
+    glm::vec3 toward{0.0f};  ///< unit, in the plane of `normal`: to the line where the site's disc ends
+    float distance = 0;      ///< of that line
 };
 
 /// The estimated surface at each site of a chunk.

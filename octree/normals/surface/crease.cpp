@@ -92,6 +92,7 @@ std::optional<Side> fit_side(const Patch& patch, const SurfaceFit& whole, float 
     const float least = kLeastOffset * spacing;
     side.offset = static_cast<float>(offset);
     side.rises = glm::dot(side.plane.normal, middle_of(rest)) > level;
+    side.roughness = static_cast<float>(std::sqrt(variance_of(other, rest.count)));
     if (std::abs(side.offset) < (across ? std::max(2 * limit, least) : least))
         side.offset = below ? least : -least;
     return side;

@@ -20,6 +20,7 @@ struct Side {
     glm::vec3 other{0.0f};  ///< the normal of the plane of all other points
     float offset = 0;       ///< other . x = offset on that plane; x is relative to the point
     bool rises = false;     ///< the other points lie on the side of `plane` to which its normal points
+    float roughness = 0;    ///< standard deviation of the other points from their plane
 };
 
 /// Finds the side of a crease on which a point lies. `whole`: the fit without creases. `spacing`: the

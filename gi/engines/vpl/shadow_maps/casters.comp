@@ -15,7 +15,7 @@ void main() {
     if (cut_surfel(id, item, surfel)) {
         caster.position = surfel_position(item, surfel);
         if (surfel_has_normal(surfel)) caster.normal = surfel_normal(surfel);
-        caster.radius = cut_surfel_radius(item, surfel);
+        caster.radius = cut_surfel_round_radius(item, surfel);
         caster.lod_area = max(surfel_lod_area(id), cut_surfel_area(item, surfel));
     }
     codes[id] = encode_caster(caster);
