@@ -11,6 +11,7 @@
 #include "io/core/parallel.h"
 #include "octree/normals/orientation/orientation.h"
 #include "octree/normals/surface/chunk_surface.h"
+#include "octree/normals/surface/edge_agreement.h"
 
 namespace lucarne::octree {
 namespace {
@@ -57,12 +58,17 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
         drop(site, crowding < kRough ? kSilhouette : kCurtain);
 }
 
-/// Drops the sides of creases that turn far and have no station.
+/// Drops the sides of creases that turn far and have no station, with their lines.
 void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
+    auto line = surface.lines.begin();
     std::erase_if(surface.sides, [&](const SideNormal& side) {
         if (!ray_of_site.empty() && ray_of_site[side.site] != glm::dvec3(0.0)) return false;
-        return std::abs(glm::dot(side.normal, surface.normals[side.site])) < kLeastTurn;
+        if (std::abs(glm::dot(side.normal, surface.normals[side.site])) >= kLeastTurn) return false;
+        while (line->site != side.site) ++line;  // every side has one
+        line->toward = glm::vec3(0.0f);
+        return true;
     });
+    std::erase_if(surface.lines, [](const SiteLine& dropped) { return dropped.toward == glm::vec3(0.0f); });
 }
 
 /// Returns the scaled ray from each site to the station that saw it. The site's first point with a known
@@ -102,6 +108,7 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
     if (!rays.empty()) drop_curtains(surface, rays);
     drop_doubtful_sides(surface, rays);
+    agree_on_lines(neighbours, surface);
     ChunkOrientation orientation;
     if (options.normals) {
         orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays));
@@ -130,18 +137,20 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     normals.components.resize(points);
     normals.edges.resize(points);
     auto side = estimate.surface.sides.begin();
+    auto line = estimate.surface.lines.begin();
     for (uint32_t site = 0; site < sites; ++site) {
         const auto members = estimate.neighbours.members(site);
         glm::vec3 normal = estimate.surface.normals[site];
         const float area = estimate.surface.areas[site] / static_cast<float>(members.size());
-        CreaseEdge edge;
+        PointEdge edge;
         for (; side != estimate.surface.sides.end() && side->site == site; ++side)
             if (normal != glm::vec3(0.0f)) {
-                const bool turned = glm::dot(side->normal, normal) < 0;
-                normal = turned ? -side->normal : side->normal;
-                edge = {encode_edge(normal, {side->toward, side->distance / std::sqrt(area)}),
-                        side->rises != turned};
+                normal = glm::dot(side->normal, normal) < 0 ? -side->normal : side->normal;
             }
+        for (; line != estimate.surface.lines.end() && line->site == site; ++line)
+            if (normal != glm::vec3(0.0f))
+                edge = {encode_edge(normal, {line->toward, line->distance / std::sqrt(area)}),
+                        glm::dot(line->normal, normal) < 0 ? turned(line->beyond) : line->beyond};
         for (const uint32_t point : members) {
             normals.normals[point] = normal;
             normals.edges[point] = edge;

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "io/points.h"
+#include "octree/normals/surface/beyond.h"
 #include "octree/tree/edge_line.h"
 
 namespace lucarne::octree {
@@ -59,19 +60,17 @@ struct NormalOptions {
 /// is so small that it is stored as the smallest area that a cache can represent.
 inline constexpr float kStrayArea = 1e-30f;
 
-/// The line to which a point's side of a crease reaches.
-struct CreaseEdge {
+/// The line at which a point's surface ends.
+struct PointEdge {
     EdgeCode code = kNoEdge;  ///< for the point's normal and area
-    /// Beyond the line the surface turns to the side of the point's normal: a corner, where discs end behind
-    /// the other side and need no line. Else it is an outer edge.
-    bool rises = false;
+    Beyond beyond = Beyond::nothing;
 };
 
 /// The result for one chunk, in the order of its positions.
 struct ChunkNormals {
     std::vector<glm::vec3> normals;  ///< unit; zero: no stable plane
     std::vector<float> areas;  ///< share of the surface (area_unit squared), 0 if unknown, or kStrayArea
-    std::vector<CreaseEdge> edges;
+    std::vector<PointEdge> edges;
     std::vector<uint32_t> components;  ///< the orientation component of the chunk to which each point belongs
 };
 

@@ -35,8 +35,11 @@ void RecordLoader::put_edge(const SurfaceStore::Point& found, std::byte* record)
     EdgeCode code = found.edge.code;
     if (code != kNoEdge) {
         const glm::vec3 drawn = drawn_normals_.of(record);
-        const bool rises = found.edge.rises == (glm::dot(drawn, found.normal) > 0);
-        code = rises ? kNoEdge : rebased_edge(code, {found.normal, found.area}, {drawn, area(record)});
+        const bool other_way = glm::dot(drawn, found.normal) < 0;
+        const Beyond beyond = other_way ? turned(found.edge.beyond) : found.edge.beyond;
+        code = beyond == Beyond::rises
+                   ? kNoEdge
+                   : rebased_edge(code, {found.normal, found.area}, {drawn, area(record)});
     }
     io::store(record + edge_->offset, code);
 }

@@ -180,7 +180,7 @@ Result<std::vector<SurfaceStore::Point>> SurfaceStore::load(size_t chunk, uint64
     for (auto& point : points)
         if (point.component < signs_[chunk].size() && signs_[chunk][point.component] < 0) {
             point.normal = -point.normal;
-            point.edge.rises = !point.edge.rises;
+            point.edge.beyond = turned(point.edge.beyond);
         }
     return points;
 }

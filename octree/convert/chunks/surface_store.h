@@ -15,7 +15,7 @@ class SurfaceStore {
         glm::vec3 normal{0.0f};  ///< as estimated, before its component's sign
         float area = 0;          ///< in faces of the root cube before it was doubled; 0: unknown
         uint32_t component = 0;
-        CreaseEdge edge;
+        PointEdge edge;
         uint8_t unused = 0;  ///< in place of padding, which checksums would include
     };
     struct Settings {

@@ -45,10 +45,13 @@ constexpr double kVerySparse = 24, kFarWindow = 4;
 constexpr float kCrowded = 8;
 /// A very sparse site that is more crowded than this is an outlier.
 constexpr float kMostCrowded = 64;
-/// A disc at an outer edge ends that many spacings beyond the line where the two planes meet, and as much
-/// farther as the other plane is rough, so that the discs of both sides meet there; but at most kOverEdge
-/// spacings.
-constexpr float kBeyondEdge = 0.1f, kOverEdge = 0.5f;
+/// A disc at an outer edge ends that many spacings beyond the line where the two planes meet, and by this
+/// share of the other plane's roughness farther, so that the discs of both sides meet there; but at most
+/// kOverEdge spacings.
+constexpr float kBeyondEdge = 0.05f, kRoughEdge = 0.25f, kOverEdge = 0.5f;
+/// At a border points up to so many deviations of the heights, and so many spacings more, over the tangent
+/// plane belong to the surface.
+constexpr float kRoughLevel = 3.0f, kFlatLevel = 0.1f;
 constexpr size_t kStepSites = 256;  ///< sites whose steps are compared: a piece of the Morton curve
 
 /// The median distance from one site to the next along the Morton curve, for each kStepSites sites.
@@ -71,14 +74,15 @@ std::vector<double> median_steps(const ChunkNeighbours& neighbours) {
     return medians;
 }
 
-/// Returns a site's side of a crease with the line where its disc ends if the crease is an outer edge.
-SideNormal side_at(uint32_t site, const Side& side, float spacing) {
+/// Returns the line of a site's side of a crease, where its disc ends if the crease is an outer edge.
+SiteLine line_at(uint32_t site, const Side& side, float spacing) {
     const auto n = glm::vec3(side.plane.normal);
     const glm::vec3 across = side.other - n * glm::dot(side.other, n);
     const float slope = glm::length(across);  // over .4: planes at a crease meet at 24 degrees and more
-    const float beyond = std::min(kBeyondEdge * spacing + side.roughness / slope, kOverEdge * spacing);
-    return {site, n, side.rises, across / (side.offset < 0 ? -slope : slope),
-            std::abs(side.offset) / slope + beyond};
+    const float beyond =
+        std::min(kBeyondEdge * spacing + kRoughEdge * side.roughness / slope, kOverEdge * spacing);
+    return {site, n, across / (side.offset < 0 ? -slope : slope), std::abs(side.offset) / slope + beyond,
+            side.rises ? Beyond::rises : Beyond::falls};
 }
 
 /// Estimates the surface at one site after another; one per thread.
@@ -165,15 +169,21 @@ class SiteEstimator {
         heights_over(*patch, fit.normal, heights_);
         cell.cut(*patch, heights_, fit.layer, side.has_value());
         if (side) cell.cut_at(side->other, side->offset);
+        const float rim = std::numbers::sqrt2_v<float> / 2 * spacing;
         if (cell.open()) {
             if (!around.knows(cell.widest_search())) return cell.widest_search();
             const auto view = around.around(std::min(cell.widest_search(), cell.widest_cut()));
             const size_t beyond = cell.cut_open(view.tile, view.centre, static_cast<float>(view.radius));
             if (apart && !cell.closed()) return leave_out(site);
+            if (!side) add_border(site, cell, around, fit, rim);
             if (beyond < view.tile.count) connect_rim(site, view, beyond);
             surface_.areas[site] = cell.area_at_rim();
         } else {
             surface_.areas[site] = cell.area();
+            if (!side && cell.outward()) {
+                if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
+                add_border(site, cell, around, fit, rim);
+            }
         }
         // A point in the air has a wide cell although its neighbours have narrow ones.
         float& area = surface_.areas[site];
@@ -182,13 +192,17 @@ class SiteEstimator {
             if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
         }
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
-        if (whole != glm::vec3(0.0f)) sides_.push_back(side_at(site, *side, spacing));
+        if (whole != glm::vec3(0.0f)) {
+            sides_.push_back({site, fit.normal});
+            lines_.push_back(line_at(site, *side, spacing));
+        }
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
         return 0;
     }
     std::span<const uint32_t> apart() const { return apart_; }
     std::span<const SideNormal> sides() const { return sides_; }
+    std::span<const SiteLine> lines() const { return lines_; }
     std::span<const CrowdedSite> crowded() const { return crowded_; }
     std::span<const BorderEdge> border() const { return border_; }
 
@@ -243,6 +257,18 @@ class SiteEstimator {
         return radius;
     }
 
+    /// `spacing`: of the points if the neighbours fill half a disc.
+    void add_border(uint32_t site, const ShareCell& cell, ChunkNeighbours::Surroundings& around,
+                    const SurfaceFit& fit, float spacing) {
+        const auto outward = cell.outward();
+        if (!outward) return;
+        const auto view = around.around(kBorderLook * spacing);
+        const float level = kRoughLevel * std::sqrt(fit.variance) + kFlatLevel * spacing;
+        const Rim rim{tangent_frame(fit.normal), *outward, spacing, level};
+        if (const auto border = find_border(view.tile, view.centre, rim))
+            lines_.push_back({site, fit.normal, border->toward, border->distance, border->beyond});
+    }
+
     void connect(uint32_t site, const Patch& nearest, const Patch* wide, const glm::vec3& normal) {
         auto& edges = surface_.edges[site];
         edges.fill(kNoSite);
@@ -294,6 +320,7 @@ class SiteEstimator {
     std::vector<float> heights_;
     std::vector<uint32_t> apart_;
     std::vector<SideNormal> sides_;
+    std::vector<SiteLine> lines_;
     std::vector<CrowdedSite> crowded_;
     std::vector<BorderEdge> border_;
 };
@@ -303,6 +330,8 @@ void collect(ChunkSurface& surface) {
     std::sort(surface.apart.begin(), surface.apart.end());
     std::sort(surface.sides.begin(), surface.sides.end(),
               [](const SideNormal& a, const SideNormal& b) { return a.site < b.site; });
+    std::sort(surface.lines.begin(), surface.lines.end(),
+              [](const SiteLine& a, const SiteLine& b) { return a.site < b.site; });
     std::sort(surface.crowded.begin(), surface.crowded.end(),
               [](const CrowdedSite& a, const CrowdedSite& b) { return a.site < b.site; });
     auto& border = surface.border;
@@ -332,6 +361,7 @@ Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, size_t k) {
     for (const auto& estimator : estimators) {
         surface.apart.insert(surface.apart.end(), estimator.apart().begin(), estimator.apart().end());
         surface.sides.insert(surface.sides.end(), estimator.sides().begin(), estimator.sides().end());
+        surface.lines.insert(surface.lines.end(), estimator.lines().begin(), estimator.lines().end());
         surface.crowded.insert(surface.crowded.end(), estimator.crowded().begin(), estimator.crowded().end());
         surface.border.insert(surface.border.end(), estimator.border().begin(), estimator.border().end());
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "octree/normals/neighbours/neighbours.h"
+#include "octree/normals/surface/border.h"
 
 namespace lucarne::octree {
 
@@ -32,9 +33,15 @@ struct CrowdedSite {
 struct SideNormal {
     uint32_t site = 0;
     glm::vec3 normal{0.0f};  ///< the sign is arbitrary
-    bool rises = false;      ///< beyond the crease the surface turns to the side of `normal`
-    glm::vec3 toward{0.0f};  ///< unit, in the plane of `normal`: to the line where the site's disc ends
-    float distance = 0;      ///< of that line
+};
+
+/// The line at which a site's surface ends: at a crease or a border.
+struct SiteLine {
+    uint32_t site = 0;
+    glm::vec3 normal{0.0f};  ///< of the site's plane (that of its side), unit
+    glm::vec3 toward{0.0f};  ///< unit, in the plane: to the line, at right angles
+    float distance = 0;
+    Beyond beyond = Beyond::nothing;  ///< seen from the side to which `normal` points
 };
 
 /// The estimated surface at each site of a chunk.
@@ -43,7 +50,8 @@ struct ChunkSurface {
     /// Sharper normals of sites at creases, sorted by site. `normals` has the normal of the whole
     /// neighbourhood there, which turns gradually over a crease, so that orientation can follow it across.
     std::vector<SideNormal> sides;
-    std::vector<float> areas;  ///< of the site, to be divided among its points; 0: unknown
+    std::vector<SiteLine> lines;  ///< sorted by site, at most one a site
+    std::vector<float> areas;     ///< of the site, to be divided among its points; 0: unknown
     std::vector<SiteEdges> edges;
     std::vector<BorderEdge> border;  ///< sorted by site and other point
     /// Sites that were accepted as a sparse surface beside a dense patch, although they look isolated;

@@ -7,6 +7,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 namespace lucarne::octree {
 namespace {
@@ -29,6 +30,9 @@ constexpr int kMostShrinks = 12;
 /// From a spacing (neighbours in half a disc) to nearly the fixed point, which a straight rim has at .55
 /// spacings.
 constexpr int kRimSteps = 4;
+/// A cell reaches over a rim in directions in which it is longer than this, in spacings of a rim. The mean of
+/// these directions is at least kOneSide long if they are on one side.
+constexpr float kOverRim = 1.2f, kOneSide = 0.4f;
 constexpr float kCoincident = 1e-10f;
 
 }  // namespace
@@ -87,6 +91,18 @@ bool ShareCell::open() const {
 
 bool ShareCell::closed() const {
     return least_ > 2 / widest_search_;
+}
+
+std::optional<glm::vec3> ShareCell::outward() const {
+    const Directions& to = directions();
+    const float rim = 1 / (kOverRim * rim_spacing_);
+    glm::vec2 sum(0.0f);
+    int count = 0;
+    for (size_t d = 0; d < kDirections; ++d)
+        if (nearness_[d] < rim) sum += glm::vec2(to.x[d], to.y[d]), ++count;
+    const float length = glm::length(sum);
+    if (!(length > kOneSide * static_cast<float>(count))) return std::nullopt;
+    return (frame_.x * sum.x + frame_.y * sum.y) / length;
 }
 
 float ShareCell::full_area() const {

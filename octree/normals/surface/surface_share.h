@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include <glm/vec3.hpp>
 
@@ -38,6 +39,9 @@ class ShareCell {
     float widest_search() const { return widest_search_; }
     float widest_cut() const;  ///< neighbours at this distance or more cannot cut the cell further
     bool closed() const;       ///< there are neighbours on all sides
+    /// Returns the middle of the directions in which the cell reaches over a rim; nothing if they are on all
+    /// sides. Unit, in the plane.
+    std::optional<glm::vec3> outward() const;
     /// The area of a cell that is not open, divided by the points that share it.
     float area() const;
     /// The area of an open cell that no further neighbour will cut. If the cell still has no end on some

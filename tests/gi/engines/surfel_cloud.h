@@ -8,6 +8,7 @@
 
 #include "gi/shared/camera.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/surfels/surfel_edge.h"
 #include "gi/surfels/surfel_pool.h"
 #include "octree/tree/source.h"
 #include "tests/gi/engines/even_order.h"
@@ -28,6 +29,8 @@ inline PackedSurfel pack(const Surfel& s, const octree::Cube& cube) {
     packed.d = has_normal ? kSurfelHasNormal : 0u;
     for (int i = 0; i < 3; ++i)
         packed.d |= static_cast<uint32_t>(std::lround(linear_to_srgb(s.albedo[i]) * 1023)) << 10 * i;
+    if (const float near = glm::length(s.edge); near > 0)
+        pack_edge(s.edge / near, static_cast<float>(1 / (near * cube.size)), packed);
     return packed;
 }
 

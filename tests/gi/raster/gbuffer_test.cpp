@@ -40,6 +40,54 @@ TEST_P(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
     }
 }
 
+TEST_P(GBufferTest, DiscEndsAtItsLine) {
+    // 2 to 150 pixels across: small and large discs. The line lies behind the disc from one eye, before it
+    // from the other.
+    for (const float area : {2e-3f, 0.01f, 0.3f})
+        for (const bool blended : {false, true})
+            for (const float eye : {0.0f, 6.0f}) {
+                Surfel half{{0.3f, 3, 0.2f}, glm::normalize(glm::vec3(1, -2, 0.7f)), kWhite, 0, area, 3};
+                const glm::vec3 toward = glm::normalize(glm::cross(half.normal, glm::vec3(0.3f, 0.2f, 1)));
+                half.edge = toward / (0.5f * std::sqrt(area));
+                const CameraView view = look({0, eye, 0}, half.position, 320, 240);
+                const Picture p = draw({half}, view, 1024, blended);
+                ASSERT_EQ(p.surfels.size(), 1u);
+                const Surfel s = p.surfels[0];
+                ASSERT_GT(glm::dot(glm::normalize(s.edge), toward), 0.998f);
+                EXPECT_NEAR(glm::length(s.edge), glm::length(half.edge), 0.1f * glm::length(half.edge));
+                size_t inside = 0, outside = 0;
+                for (uint32_t y = 0; y < 240; ++y)
+                    for (uint32_t x = 0; x < 320; ++x) {
+                        const size_t at = y * 320 + x;
+                        const glm::vec3 ray = p.ray(x, y);
+                        const float depth =
+                            glm::dot(s.normal, s.position - p.eye()) / glm::dot(s.normal, ray);
+                        const glm::vec3 offset = p.eye() + depth * ray - s.position;
+                        const float beyond = glm::dot(s.edge, offset), r = glm::length(offset) / s.radius;
+                        if (r < 0.98f && beyond < 0.96f) {
+                            ++inside;
+                            ASSERT_FALSE(p.empty(at)) << x << " " << y;
+                            EXPECT_EQ((p.texels[at].albedo & kTexelFromBehind) != 0, eye > 3);
+                            EXPECT_NEAR(p.texels[at].depth, depth, 2e-3f);
+                        } else if (r > 1.02f || beyond > 1.04f) {
+                            outside += r < 0.98f;
+                            ASSERT_TRUE(p.empty(at)) << x << " " << y << " beyond " << beyond;
+                        }
+                    }
+                EXPECT_GT(inside, 2u);
+                EXPECT_GT(outside, area > 5e-3f ? 5u : 0u);
+            }
+}
+
+TEST_P(GBufferTest, PointsOfAFixedSizeHaveNoLines) {
+    Surfel half{{0, 3, 0}, {0, -1, 0}, kWhite, 0, 0.01f, 0};
+    const CameraView view = look({0, 0, 0}, {0, 1, 0}, 64, 64);
+    const PointSize size{.pixels = 15};
+    const Picture whole = draw({half}, view, 1024, false, size);
+    half.edge = {40, 0, 0};
+    EXPECT_EQ(draw({half}, view, 1024, false, size).ids, whole.ids);
+}
+
 TEST_P(GBufferTest, NormalsAreTurnedTowardTheViewer) {
     const Surfel away{{0, 3, 0}, {0, 1, 0}, kWhite, 0, 0.1f, 0};
     const Picture p = draw({away}, look({0, 0, 0}, {0, 1, 0}, 64, 64));

@@ -9,6 +9,7 @@
 #include "gi/raster/native/large_disc.h"
 #include "gi/raster/native/texels-inl.h"
 #include "gi/shared/disc.h"
+#include "gi/shared/edge.h"
 #include "gi/shared/frame.h"
 
 namespace lucarne::gi {
@@ -128,6 +129,7 @@ ViewDisc some_disc(Numbers& number) {
     disc.radius = 0.3f + 0.25f * number();
     disc.extent = disc_reach(disc.radius, disc.normal.z);
     disc.push = kRimPush * disc.radius;
+    disc.edge = cross(disc.normal, number.unit()) / disc.radius;
     return disc;
 }
 
@@ -145,7 +147,8 @@ PixelRay ray_of(const DiscView& view, int x, int y) {
 TEST(Disc, IsMetInItsPlaneAndWithinItsRim) {
     Numbers number;
     for (int i = 0; i < 1000; ++i) {
-        const ViewDisc disc = some_disc(number);
+        ViewDisc disc = some_disc(number);
+        disc.edge = vec3(0.0f);
         vec3 along, other;
         frame_about(disc.normal, along, other);
         const vec3 inside = disc.centre + 0.99f * disc.radius * along;
@@ -203,8 +206,27 @@ TEST(Disc, OfVectorsIsTheSame) {
             // Without fused operations the bits are the same.
             EXPECT_EQ(lane(met.z), hit.t);
             EXPECT_EQ(lane(met.distance2), hit.distance2);
+            EXPECT_EQ(lane(met.beyond), dot(disc.edge, hit.offset));
             EXPECT_EQ(lane(vectors::in_disc(disc, met.z)), disc_depth_within(disc, hit.t));
         }
+    }
+}
+
+TEST(Disc, LinesOfVectorsAreTheSame) {
+    Numbers number;
+    const DiscView view = picture_of(0);
+    for (int i = 0; i < 10'000; ++i) {
+        const auto any = [&] { return static_cast<uint32_t>((number() + 1) * 0x7fffffff); };
+        const uint32_t b = any(), c = encode_octahedral(number.unit()) ^ (any() & 0x000f000fu),
+                       d = any() | (i % 3 ? kSurfelHasEdge : 0u);
+        const vec3 expected = d & kSurfelHasEdge ? edge_of_code(surfel_edge_code(c, d), decode_octahedral(c),
+                                                                std::sqrt(surfel_own_area(b, 4.0f)))
+                                                 : vec3(0.0f);
+        const auto found =
+            vectors::disc_edges(view, vectors::word(b), vectors::word(c), vectors::word(d), 4.0f);
+        const auto lane = [](vectors::F v) { return vectors::hn::GetLane(v); };
+        const vec3 edge(lane(found.x), lane(found.y), lane(found.z));
+        EXPECT_LE(length(edge - expected), 2e-6f * length(expected)) << i;
     }
 }
 

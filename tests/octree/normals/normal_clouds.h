@@ -71,6 +71,7 @@ class MemoryChunks final : public ChunkAccess {
 struct Estimate {
     std::vector<glm::vec3> normals;
     std::vector<float> areas;
+    std::vector<PointEdge> edges;
 };
 
 inline Estimate estimate(const Cloud& cloud, const NormalOptions& options = {}, uint32_t parts = 1,
@@ -85,7 +86,8 @@ inline Estimate estimate(const Cloud& cloud, const NormalOptions& options = {}, 
             return {};
         });
     EXPECT_TRUE(signs.has_value()) << (signs ? "" : signs.error().line());
-    Estimate whole{std::vector<glm::vec3>(cloud.points.size()), std::vector<float>(cloud.points.size())};
+    Estimate whole{std::vector<glm::vec3>(cloud.points.size()), std::vector<float>(cloud.points.size()),
+                   std::vector<PointEdge>(cloud.points.size())};
     if (!signs) return whole;
     for (size_t chunk = 0; chunk < results.size(); ++chunk) {
         EXPECT_EQ(calls[chunk], 1);
@@ -95,6 +97,8 @@ inline Estimate estimate(const Cloud& cloud, const NormalOptions& options = {}, 
             const float sign = (*signs)[chunk].at(results[chunk].components[i]);
             whole.normals[members[i]] = sign * results[chunk].normals[i];
             whole.areas[members[i]] = results[chunk].areas[i];
+            whole.edges[members[i]] = results[chunk].edges[i];
+            if (sign < 0) whole.edges[members[i]].beyond = turned(results[chunk].edges[i].beyond);
         }
     }
     if (loaded_points) *loaded_points = chunks.loaded_points();

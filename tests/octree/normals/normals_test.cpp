@@ -283,12 +283,12 @@ TEST(Normals, ThreadsAndMemoryDoNotChangeTheResult) {
         }
 }
 
-TEST(Normals, AreasAloneLeaveNormalsOut) {
+TEST(Normals, AreasAloneNeedNoOrientation) {
     const Cloud cloud = plane(5000);
     NormalOptions options;
     options.normals = false;
     const Score s = score(cloud, estimate(cloud, options, 2));
-    EXPECT_EQ(s.marked, 1);
+    EXPECT_LT(s.angle, 1) << "for lines at edges; whichever side they face";
     EXPECT_NEAR(s.area, 1, 0.06);
 }
 

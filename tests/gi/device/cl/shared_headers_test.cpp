@@ -14,6 +14,7 @@
 #include "gi/shared/camera.h"
 #include "gi/shared/clip.h"
 #include "gi/shared/disc.h"
+#include "gi/shared/edge.h"
 #include "gi/shared/environment.h"
 #include "gi/shared/flat_surfel.h"
 #include "gi/shared/frame.h"
@@ -27,9 +28,9 @@
 namespace lucarne::gi {
 namespace {
 
-/// Returns the embedded headers that OpenCL C shares: every one of gi/shared, and the footprint.
+/// Returns the embedded headers that OpenCL C shares: every one of gi/shared, and those of octree.
 std::vector<std::string> shared_headers() {
-    std::vector<std::string> headers = {"octree/tree/footprint.h"};
+    std::vector<std::string> headers = {"octree/tree/edge_turn.h", "octree/tree/footprint.h"};
     for (const ShaderText& text : shader_texts())
         if (text.path.starts_with("gi/shared/") && text.path.ends_with(".h")) headers.emplace_back(text.path);
     return headers;
@@ -109,7 +110,7 @@ using octree::surfel_area, octree::surfel_radius;
 // Each sample maps 16 numbers in [0, 1) to four results.
 // clang-format off
 LUCARNE_IN_BOTH(kSamplesText,
-LUCARNE_CONST uint kSamples = 14u;
+LUCARNE_CONST uint kSamples = 15u;
 
 LUCARNE_FN vec3 rgb_of(vec4 v) { return vec3(v.x, v.y, v.z); }
 LUCARNE_FN vec3 unit_of(vec4 v) { return normalize(rgb_of(v) - 0.5f); }
@@ -208,6 +209,7 @@ LUCARNE_FN ViewDisc disc_of(vec4 a, vec4 b) {
     disc.radius = 0.1f + a.w;
     disc.extent = disc_reach(disc.radius, disc.normal.z);
     disc.push = kRimPush * disc.radius;
+    disc.edge = vec3(4.0f * b.z, 0.0f, 4.0f * b.w);
     return disc;
 }
 LUCARNE_FN vec4 disc_sample(vec4 a, vec4 b, vec4 c) {
@@ -216,6 +218,10 @@ LUCARNE_FN vec4 disc_sample(vec4 a, vec4 b, vec4 c) {
     DiscHit hit = meet_disc(disc.centre, disc.normal, ray);
     uint key = disc_key(disc, vec3(0.0f), ray, 0.01f, true);
     return vec4(hit.t, hit.distance2, disc_depth(disc, vec3(0.0f), ray), uintBitsToFloat(key));
+}
+LUCARNE_FN vec4 edge_sample(vec4 a, vec4 b) {
+    vec3 edge = edge_of_code(surfel_edge_code(bits_of(a), bits_of(b)), decode_octahedral(bits_of(a)), b.w);
+    return with(edge, within_edge(edge, rgb_of(b)) ? 1.0f : 0.0f);
 }
 LUCARNE_FN vec4 range_sample(vec4 a, vec4 b) {
     ViewDisc disc = disc_of(a, b);
@@ -238,6 +244,7 @@ LUCARNE_FN vec4 sample_of(uint which, vec4 a, vec4 b, vec4 c, vec4 d) {
     if (which == 10u) return camera_sample(a, b, c);
     if (which == 11u) return texel_sample(a, b);
     if (which == 12u) return disc_sample(a, b, c);
+    if (which == 13u) return edge_sample(a, b);
     return range_sample(a, b);
 }
 )
@@ -245,7 +252,7 @@ LUCARNE_FN vec4 sample_of(uint which, vec4 a, vec4 b, vec4 c, vec4 d) {
 
 constexpr const char* kSampleNames[] = {"brdf",   "irradiance", "direction", "octahedral", "colour",
                                         "surfel", "size",       "clip",      "screen",     "environment",
-                                        "camera", "texel",      "disc",      "range"};
+                                        "camera", "texel",      "disc",      "edge",       "range"};
 
 TEST_F(SharedHeadersInOpenCl, FunctionsReturnTheValuesOfTheHost) {
     ASSERT_EQ(std::size(kSampleNames), kSamples);

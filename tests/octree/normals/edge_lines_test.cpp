@@ -1,0 +1,213 @@
+// Lines at creases: where discs at the edges of boxes end.
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "octree/tree/footprint.h"
+#include "tests/octree/normals/normal_clouds.h"
+
+namespace lucarne::octree {
+namespace {
+
+using testing::Cloud, testing::cube, testing::estimate, testing::Estimate;
+
+constexpr size_t kBoxPoints = 60'000;
+constexpr double kBoxSpacing = 0.01;  ///< of the cube's points: 6 m2 / 60000
+
+/// A unit cube seen from above the middle of each face, or from its own middle.
+struct Scanned {
+    Cloud cloud;
+    NormalOptions options;
+};
+Scanned scanned(double noise, bool inside) {
+    Scanned made{cube(kBoxPoints, noise), {}};
+    for (int face = 0; face < 6; ++face) {
+        glm::dvec3 n(0.0);
+        n[face / 2] = face % 2 ? 1 : -1;
+        made.options.stations.push_back(glm::dvec3(0.5) + (inside ? 0.0 : 3.0) * n);
+    }
+    for (const glm::dvec3& n : made.cloud.normals)
+        for (int face = 0; face < 6; ++face)
+            if (n[face / 2] == (face % 2 ? 1 : -1)) made.cloud.stations.push_back(face);
+    return made;
+}
+
+/// A point on a face of the cube near one of its edges.
+struct NearEdge {
+    size_t point = 0;
+    glm::dvec3 outward{0.0};  ///< in the face, toward the edge
+    double distance = 0;      ///< of the edge, m
+    double along = 0;         ///< place along the edge, m
+};
+/// Returns the points whose discs may reach over an edge, but not those near a corner, which have two.
+std::vector<NearEdge> near_edges(const Cloud& cloud) {
+    std::vector<NearEdge> found;
+    for (size_t i = 0; i < cloud.points.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            if (cloud.normals[i][axis] != 0) continue;
+            const double at = cloud.points[i][axis], distance = std::min(at, 1 - at);
+            int other = 0;
+            while (other == axis || cloud.normals[i][other] != 0) ++other;
+            const double along = cloud.points[i][other];
+            if (distance > 2 * kBoxSpacing || std::min(along, 1 - along) < 6 * kBoxSpacing) continue;
+            glm::dvec3 outward(0.0);
+            outward[axis] = at < 0.5 ? -1 : 1;
+            found.push_back({i, outward, distance, along});
+        }
+    return found;
+}
+
+/// How far a disc reaches over an edge at a place along it, m; -1 where it does not reach the place.
+double reach_at(const NearEdge& near, const Cloud& cloud, const Estimate& found, double along) {
+    const double area = found.areas[near.point], radius = surfel_radius(static_cast<float>(area), 0);
+    const double beside = along - near.along;
+    if (std::abs(beside) >= radius) return -1;
+    double reach = std::sqrt(radius * radius - beside * beside);
+    const auto line = decode_edge(found.normals[near.point], found.edges[near.point].code);
+    if (line) {
+        // The point (reach, beside) of the face must not be beyond the line.
+        glm::dvec3 other(0.0);
+        for (int axis = 0; axis < 3; ++axis)
+            if (near.outward[axis] == 0 && cloud.normals[near.point][axis] == 0) other[axis] = 1;
+        const double across = glm::dot(glm::dvec3(line->toward), near.outward),
+                     side = glm::dot(glm::dvec3(line->toward), other) * beside;
+        const double distance = line->distance * std::sqrt(area);
+        if (across > 0.1) reach = std::min(reach, (distance - side) / across);
+    }
+    return reach - near.distance;
+}
+
+TEST(EdgeLines, MostOfABoxsOutlineIsRightToAQuarterOfASpacing) {
+    // What is missing are discs whose planes lie across the edge, which no line of their neighbours fits.
+    const std::pair<double, double> kLeast[] = {{0.0, 0.8}, {0.1, 0.6}, {0.2, 0.45}};
+    for (const auto& [noise, least] : kLeast) {
+        const auto [cloud, options] = scanned(noise * kBoxSpacing, false);
+        const Estimate found = estimate(cloud, options);
+        const auto near = near_edges(cloud);
+        // Four faces' edges lie along each place; one face of one edge is looked at.
+        std::vector<NearEdge> one;
+        for (const NearEdge& n : near)
+            if (cloud.normals[n.point].z > 0 && n.outward.x > 0) one.push_back(n);
+        constexpr int kOutlinePlaces = 3000;
+        int right = 0, short_of_it = 0;
+        for (int i = 0; i < kOutlinePlaces; ++i) {
+            const double along = 0.1 + 0.8 * i / kOutlinePlaces;
+            double reach = -1;
+            for (const NearEdge& n : one) reach = std::max(reach, reach_at(n, cloud, found, along));
+            right += std::abs(reach) < 0.25 * kBoxSpacing;
+            short_of_it += reach < -0.1 * kBoxSpacing;
+        }
+        size_t rising = 0, lined = 0;
+        for (const NearEdge& n : near)
+            if (found.edges[n.point].code != kNoEdge && found.normals[n.point] != glm::vec3(0.0f))
+                ++lined, rising += found.edges[n.point].beyond == Beyond::rises;
+        std::printf(
+            "noise of %.1f spacings: %.1f %% of the outline right, %.2f %% short of the edge; %.1f %% of the "
+            "points at edges have lines, %.2f %% of these are taken for corners\n",
+            noise, 100.0 * right / kOutlinePlaces, 100.0 * short_of_it / kOutlinePlaces,
+            100.0 * static_cast<double>(lined) / static_cast<double>(near.size()),
+            100.0 * static_cast<double>(rising) / static_cast<double>(lined));
+        EXPECT_GE(right, least * kOutlinePlaces) << noise;
+        EXPECT_GE(lined, 9 * near.size() / 10) << noise;
+        EXPECT_LE(short_of_it, 0.01 * kOutlinePlaces) << noise;
+        EXPECT_LE(rising, 0.01 * static_cast<double>(lined)) << noise;
+    }
+}
+
+TEST(EdgeLines, CornersOfARoomAreToldFromEdges) {
+    const auto [cloud, options] = scanned(0.1 * kBoxSpacing, true);
+    const Estimate found = estimate(cloud, options);
+    size_t lined = 0, outer = 0;
+    for (size_t i = 0; i < cloud.points.size(); ++i)
+        if (found.edges[i].code != kNoEdge) ++lined, outer += found.edges[i].beyond != Beyond::rises;
+    EXPECT_GT(lined, kBoxPoints / 20);
+    EXPECT_LE(outer, lined / 50);
+}
+
+TEST(EdgeLines, AreasOfPointsAtEdgesAddUpToTheSurface) {
+    const auto [cloud, options] = scanned(0.1 * kBoxSpacing, false);
+    const Estimate found = estimate(cloud, options);
+    double all = 0, rim = 0, points = 0;
+    for (size_t i = 0; i < cloud.points.size(); ++i) {
+        all += found.areas[i];
+        double nearest = 1;
+        for (int axis = 0; axis < 3; ++axis)
+            if (cloud.normals[i][axis] == 0)
+                nearest = std::min({nearest, cloud.points[i][axis], 1 - cloud.points[i][axis]});
+        if (nearest < 2 * kBoxSpacing) rim += found.areas[i], ++points;
+    }
+    EXPECT_NEAR(all, 6, 0.12);
+    const double width = 1 - 4 * kBoxSpacing;
+    EXPECT_NEAR(rim, 6 * (1 - width * width), 0.15 * rim) << "of " << points << " points";
+}
+
+/// Counts the points with lines, without those within three spacings of a unit square's border.
+size_t lined_inside(const Cloud& cloud, double spacing) {
+    const Estimate found = estimate(cloud);
+    size_t lined = 0;
+    for (size_t i = 0; i < cloud.points.size(); ++i) {
+        const glm::dvec3 p = glm::abs(cloud.points[i] - 0.5);
+        if (std::max(p.x, p.y) < 0.5 - 3 * spacing) lined += found.edges[i].code != kNoEdge;
+    }
+    return lined;
+}
+
+TEST(EdgeLines, SmoothAndNoisySurfacesHaveNone) {
+    const Estimate round = estimate(testing::sphere(20'000));
+    EXPECT_LE(std::ranges::count_if(round.edges, [](const PointEdge& e) { return e.code != kNoEdge; }), 20);
+    for (const double noise : {0.1, 0.5, 1.0})
+        EXPECT_LE(lined_inside(testing::plane(20'000, noise * 0.007), 0.007), 100) << noise;
+}
+
+TEST(EdgeLines, NarrowHolesKeepWholeDiscsAndWideOnesEndAtTheirBorder) {
+    for (const double half : {0.02, 0.2}) {  // 6 and 57 spacings wide
+        Cloud cloud = testing::plane(20'000);
+        std::erase_if(cloud.points, [&](const auto& p) { return std::abs(p.x - 0.5) < half; });
+        cloud.normals.resize(cloud.points.size());
+        const Estimate found = estimate(cloud);
+        size_t beside = 0, lined = 0, wrong = 0;
+        for (size_t i = 0; i < cloud.points.size(); ++i) {
+            const glm::dvec3& p = cloud.points[i];
+            const double away = std::abs(p.x - 0.5) - half;
+            if (away > 0.007 || std::abs(p.y - 0.5) > 0.47) continue;
+            ++beside;
+            const auto line = decode_edge(found.normals[i], found.edges[i].code);
+            if (!line) continue;
+            ++lined;
+            const double reach = line->distance * std::sqrt(double{found.areas[i]}) - away;
+            wrong += line->toward.x * (p.x < 0.5 ? 1 : -1) < 0.7 || std::abs(reach) > 0.007;
+        }
+        if (half > 0.1) {
+            EXPECT_GE(lined, beside * 7 / 10) << beside;
+            EXPECT_LE(wrong, lined / 10);
+        } else {
+            EXPECT_LE(lined, beside / 10) << "discs close it as far as they reach";
+        }
+    }
+}
+
+TEST(EdgeLines, OfAWireMeshAndOfStackedPointsAreFinite) {
+    Random random(8);
+    Cloud wires, stacked;
+    for (int i = 0; i < 20'000; ++i) {  // wires of a grid, 1 mm thick, 2 cm apart
+        glm::dvec3 p(0.02 * std::floor(50 * random.uniform()), random.uniform(), 0.001 * random.uniform());
+        if (i % 2) std::swap(p.x, p.y);
+        wires.points.push_back(p + 0.001 * random.uniform());
+        stacked.points.push_back(i < 10'000 ? glm::dvec3(1, 2, 3) : p);
+    }
+    for (Cloud* cloud : {&wires, &stacked}) {
+        cloud->normals.resize(cloud->points.size());
+        const Estimate found = estimate(*cloud);
+        for (size_t i = 0; i < cloud->points.size(); ++i) {
+            const auto line = decode_edge(found.normals[i], found.edges[i].code);
+            if (line) {
+                ASSERT_NEAR(glm::length(line->toward), 1, 1e-4);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::octree
