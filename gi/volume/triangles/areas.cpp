@@ -1,7 +1,7 @@
 #include "gi/volume/triangles/areas.h"
 
+#include <algorithm>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -13,7 +13,7 @@
 namespace lucarne::gi::volume {
 namespace {
 
-constexpr size_t kTrianglesATask = 256;
+constexpr size_t kTrianglesATask = 256, kTrianglesAtOnce = size_t{1} << 16;
 /// Parts that are made, and then added, at once; a single triangle may have more.
 constexpr double kPartsAtOnce = 1e6;
 
@@ -62,17 +62,23 @@ VoxelSet areas_of_triangles(const MeshTriangles& triangles) {
     std::vector<GridTriangle> some;
     std::vector<VoxelPart> all;
     std::vector<std::vector<VoxelPart>> pieces;
-    for (size_t next = 0; next < triangles.count();) {
-        some.clear();
-        for (double expected = 0; next < triangles.count() && expected < kPartsAtOnce; ++next)
-            expected += parts_of(some.emplace_back(triangles[next]));
-        pieces.assign((some.size() + kTrianglesATask - 1) / kTrianglesATask, {});
-        parallel_ranges(some.size(), kTrianglesATask, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i) divide(some[i], size, pieces[first / kTrianglesATask]);
+    for (size_t first = 0; first < triangles.count(); first += kTrianglesAtOnce) {
+        some.resize(std::min(kTrianglesAtOnce, triangles.count() - first));
+        parallel_ranges(some.size(), kTrianglesATask, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) some[i] = triangles[first + i];
         });
-        all.clear();
-        for (const auto& piece : pieces) all.insert(all.end(), piece.begin(), piece.end());
-        sums.add(all);
+        for (size_t begin = 0, end = 0; begin < some.size(); begin = end) {
+            for (double expected = 0; end < some.size() && expected < kPartsAtOnce; ++end)
+                expected += parts_of(some[end]);
+            pieces.assign((end - begin + kTrianglesATask - 1) / kTrianglesATask, {});
+            parallel_ranges(end - begin, kTrianglesATask, [&](size_t from, size_t to) {
+                for (size_t i = from; i < to; ++i)
+                    divide(some[begin + i], size, pieces[from / kTrianglesATask]);
+            });
+            all.clear();
+            for (const auto& piece : pieces) all.insert(all.end(), piece.begin(), piece.end());
+            sums.add(all);
+        }
     }
     return sums.means(triangles.grid(), triangles.origin());
 }
