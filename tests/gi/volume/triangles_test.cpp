@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "gi/volume/surfel_voxels.h"
 #include "gi/volume/triangles/areas.h"
 #include "gi/volume/triangles/raster_voxels.h"
 #include "io/core/parallel.h"
@@ -126,6 +127,36 @@ TEST(AreasOfTriangles, AreTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(std::ranges::equal(all.voxels, one.voxels, [](const auto& a, const auto& b) {
         return a.cell == b.cell && a.area == b.area && a.normal == b.normal && a.albedo == b.albedo;
     }));
+}
+
+/// The discs of points that lie evenly on a sphere fill all voxels that its triangles meet, and further ones
+/// by their rims.
+TEST(SurfelVoxels, HoldTheAreaAndTheVoxelsOfTheSurfaceTheyLieOn) {
+    const glm::dvec3 middle(3, 4, -5);
+    const Mesh mesh = finished(sphere(middle, 2, 64));
+    const MeshTriangles triangles = in_grid(mesh, 32);
+    constexpr uint32_t kPoints = 20'000;
+    const auto area = static_cast<float>(16 * M_PI / kPoints);
+    std::vector<Surfel> surfels;
+    for (uint32_t i = 0; i < kPoints; ++i) {
+        const double z = 1 - (2 * i + 1.0) / kPoints, across = std::sqrt(1 - z * z),
+                     angle = 2.39996322972865 * i;
+        const glm::dvec3 out(across * std::cos(angle), across * std::sin(angle), z);
+        surfels.push_back({glm::vec3(middle + 2.0 * out - triangles.origin()), glm::vec3(out),
+                           glm::vec3(.25f), 1.3f * std::sqrt(area), area, 0});
+    }
+    const auto set = voxels_of_surfels(surfels, triangles.grid(), triangles.origin());
+    ASSERT_TRUE(set) << set.error().line();
+    EXPECT_NEAR(set->area() / (16 * M_PI), 1, .01) << "some discs stick out of the grid about the mesh";
+    const VoxelSet exact = areas_of_triangles(triangles);
+    EXPECT_LE(difference(*set, exact).only_second, exact.voxels.size() / 100);
+    EXPECT_LE(set->voxels.size(), exact.voxels.size() * 11 / 10);
+    for (const OccupiedVoxel& voxel : set->voxels) {
+        EXPECT_GT(glm::dot(glm::normalize(set->middle(voxel) - middle), glm::dvec3(voxel.normal)), .97);
+        EXPECT_NEAR(voxel.albedo.x, .25f, 1e-4f);
+    }
+    for (Surfel& surfel : surfels) surfel.normal = glm::vec3(0);
+    EXPECT_FALSE(voxels_of_surfels(surfels, 32, glm::dvec3(0)));
 }
 
 using RasterVoxels = OnDevice;
