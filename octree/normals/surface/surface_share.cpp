@@ -32,7 +32,7 @@ constexpr int kMostShrinks = 12;
 constexpr int kRimSteps = 4;
 /// A cell reaches over a rim in directions in which it is longer than this, in spacings of a rim. The mean of
 /// these directions is at least kOneSide long if they are on one side.
-constexpr float kOverRim = 1.2f, kOneSide = 0.4f;
+constexpr float kOverRim = 2.0f, kOneSide = 0.4f;
 constexpr float kCoincident = 1e-10f;
 
 }  // namespace

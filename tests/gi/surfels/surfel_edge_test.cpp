@@ -49,7 +49,8 @@ TEST(SurfelEdge, IsFoundAgainAndHardlyChangesNormalAndColour) {
         const vec3 toward = std::cos(angle) * along + std::sin(angle) * other;
         PackedSurfel surfel = plain;
         pack_edge(toward, distance * root_of(plain), surfel);
-        if (!(surfel.d & kSurfelHasEdge)) {  // its normal lies between two axes, and each code turns it to the other
+        if (!(surfel.d &
+              kSurfelHasEdge)) {  // its normal lies between two axes, and each code turns it to the other
             ++none;
             continue;
         }
