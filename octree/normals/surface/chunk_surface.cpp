@@ -175,8 +175,8 @@ class SiteEstimator {
             const auto view = around.around(std::min(cell.widest_search(), cell.widest_cut()));
             const size_t beyond = cell.cut_open(view.tile, view.centre, static_cast<float>(view.radius));
             if (apart && !cell.closed()) return leave_out(site);
-            if (!side) add_border(site, cell, around, fit, rim);
             if (beyond < view.tile.count) connect_rim(site, view, beyond);
+            if (!side) add_border(site, cell, around, fit, rim);  // gathers other points into `view`
             surface_.areas[site] = cell.area_at_rim();
         } else {
             surface_.areas[site] = cell.area();
