@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "io/points.h"
-#include "octree/normals/surface/beyond.h"
+#include "octree/normals/beyond.h"
 #include "octree/tree/edge_line.h"
 
 namespace lucarne::octree {

@@ -4,8 +4,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "octree/normals/beyond.h"
 #include "octree/normals/neighbours/tile.h"
-#include "octree/normals/surface/beyond.h"
 
 namespace lucarne::octree {
 
