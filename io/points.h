@@ -64,7 +64,7 @@ inline constexpr std::string_view normal = "normal";  ///< f32 or f64 x3, as in 
 inline constexpr std::string_view normal_oct =
     "normal_oct";                                 ///< u8 x3, estimated; see octree/tree/attributes.h
 inline constexpr std::string_view area = "area";  ///< u16, share of surface at full resolution; as above
-/// u8 x2: the line at an outer edge where a point's disc ends; see octree/tree/edge_line.h
+/// u8 x2: the line where a point's disc ends, at an outer edge or a border; see octree/tree/edge_line.h
 inline constexpr std::string_view edge_line = "edge_line";
 /// Of Gaussian splats: f32 x3, the direction of the shortest axis, whose sign means nothing, or zero; and
 /// f32, the radius of the disc that covers as much as the splat, in the file's unit.

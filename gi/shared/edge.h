@@ -1,5 +1,5 @@
-// Lines at which the discs of surfels end, because another plane of the surface begins there, for C++, GLSL
-// and OpenCL C. octree/tree/edge_line.h has the lines of a cache.
+// Lines at which the discs of surfels end, because their surface ends there, for C++, GLSL and OpenCL C.
+// octree/tree/edge_line.h has the lines of a cache.
 //
 // A surfel with kSurfelHasEdge keeps its line in the lowest bits of its normal and its colour, which are
 // finer than what scans know: the normal is off by at most .04 degrees, the colour by .3 % of white (sRGB).

@@ -8,8 +8,8 @@
 
 namespace lucarne::octree {
 
-/// The line in a point's tangent plane where its surface ends, because another plane of the surface begins
-/// there (a crease). The point's disc has no part beyond it.
+/// The line in a point's tangent plane where its surface ends: at a crease, where another plane begins, or at
+/// a border, beyond which there is nothing. The point's disc has no part beyond it.
 struct EdgeLine {
     glm::vec3 toward{0.0f};  ///< unit, in the tangent plane: from the point to the line, at right angles
     float distance = 0;      ///< of the line, in roots of the point's own share of the surface (its area)
