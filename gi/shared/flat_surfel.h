@@ -10,11 +10,11 @@ namespace lucarne::gi {
 
 LUCARNE_STRUCT(FlatSurfel) {
     float x, y, z;  // m, relative to the local origin
-    float
-        radius;  // m, of a round disc (cut_surfel_round_radius); 0: no surfel has this id, or it is not drawn
-    float area;  // m^2, its share of the surface
-    uint normal;  // octahedral
-    uint albedo;  // sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
+    float radius;   // m, of a whole disc, also where a line ends it; 0: no surfel has this id, or it is not
+                    // drawn
+    float area;     // m^2, its share of the surface
+    uint normal;    // octahedral
+    uint albedo;    // sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
     uint material;
     // Room for two edges, 16 bits each: half-planes in the tangent plane that clip the disc. kNoEdges: a
     // whole disc, as all are today.

@@ -154,8 +154,7 @@ void add_voxelize(CommandLine& line) {
     command
         .add("-o,--output", options->output,
              "Where to write the voxels' middles as points, with normal, colour and area (voxel_area, m2): "
-             ".ply, "
-             "or another format of scans")
+             ".ply, or another format of scans")
         .required()
         .type_name("FILE");
     command.add("--grid", options->grid, "Voxels along the longest side")
@@ -174,8 +173,7 @@ void add_voxelize(CommandLine& line) {
     command
         .add("--vertex-limit", options->vertices,
              "With geometry or slices: vertices that the geometry shader emits for a triangle at most; what "
-             "does "
-             "not fit is missing (default: nothing is missing)")
+             "does not fit is missing (default: nothing is missing)")
         .range(3u, gi::volume::kMostEmitted)
         .type_name("N");
     command.add("--bits", options->bits, "With geometry or slices: bits of a float in the volume")

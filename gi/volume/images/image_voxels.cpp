@@ -125,7 +125,7 @@ void ImageVoxels::inject(std::span<const SeenImage> images, const ImageUpdate& h
     sums_.resize(voxels_.size());
     for (uint32_t i = 0; i < images.size(); ++i) {
         inject(images[i], i + 1, how);
-        finish_image(images[i], i + 1);
+        finish_image(images[i]);
     }
     // Means of this update alone: nothing adds up over time.
     parallel_ranges(filled_.size(), kVoxelsATask, [&](size_t first, size_t last) {
@@ -201,16 +201,14 @@ void ImageVoxels::inject(const SeenImage& image, uint32_t number, const ImageUpd
 
 /// Brings the light of a picture to its voxels. The first light of an update replaces what was there; further
 /// lights add to it; a camera shows all light at once and replaces that of the lights (chapter 7.5).
-void ImageVoxels::finish_image(const SeenImage& image, uint32_t number) {
+void ImageVoxels::finish_image(const SeenImage& image) {
     if (image.light.empty()) return;
     for (const uint32_t voxel : touched_) {
         Sums& sums = sums_[voxel];
-        assert(sums.image == number);
         const glm::vec3 light = sums.image_light / sums.image_count;
         voxels_[voxel].light = image.of_light && sums.lit ? voxels_[voxel].light + light : light;
         sums.lit = true;
     }
-    static_cast<void>(number);
 }
 
 /// Clears, keeps or fills every voxel of the window by what the pictures show at its middle.

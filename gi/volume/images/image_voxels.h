@@ -87,7 +87,7 @@ class ImageVoxels {
     void clean(std::span<const SeenImage> images, const ImageUpdate& how);
     void inject(std::span<const SeenImage> images, const ImageUpdate& how);
     void inject(const SeenImage& image, uint32_t number, const ImageUpdate& how);
-    void finish_image(const SeenImage& image, uint32_t number);
+    void finish_image(const SeenImage& image);
     void fuse(std::span<const SeenImage> images, const ImageUpdate& how);
     void fuse_cell(std::span<const VoxelSight> sights, std::span<const SeenImage> images,
                    const ImageUpdate& how, const glm::ivec3& cell, uint32_t number,
@@ -95,7 +95,7 @@ class ImageVoxels {
 
     Grid grid_;  ///< its size and voxel only
     glm::ivec3 low_;
-    std::vector<uint32_t> numbers_;  ///< by slot: of the voxel; kNone
+    std::vector<uint32_t> numbers_;  ///< by slot: of the voxel; kEmptySlot: none
     std::vector<SeenVoxel> voxels_;  ///< V_curr of the thesis
     std::vector<SeenVoxel> before_;  ///< V_prev: the two change places in each pass
     std::vector<Sums> sums_;         ///< by voxel, of the update under way
