@@ -110,8 +110,7 @@ void light_for_place(const Lighting& model) {
 
 void take_mood(const Lighting& model, Mood mood) {
     set_mood_here(model.view, mood);
-    const std::string_view unlit = engine_of(Mood::scan_colours);
-    if (mood == Mood::scan_colours || model.view.method.engine == unlit)
+    if (mood == Mood::scan_colours || shows_moods(model.view.method.engine))
         model.view.method.engine = engine_of(mood);
     model.lights.selected = 0;
     model.lights.mood = mood;

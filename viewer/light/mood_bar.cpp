@@ -6,6 +6,7 @@
 
 #include <imgui.h>
 
+#include "gi/registry.h"
 #include "viewer/light/lighting.h"
 #include "viewer/opening/moods.h"
 #include "viewer/ui/on_screen.h"
@@ -71,7 +72,9 @@ void draw_mood_bar(const Lighting& model) {
                 ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
             if (ImGui::Button(info.label.data())) take_mood(model, info.mood);
             if (chosen) ImGui::PopStyleColor();
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", info.help.data());
+            if (ImGui::IsItemHovered())
+                ImGui::SetTooltip("%s\nEngine: %s", info.help.data(),
+                                  gi::label_of(engine_of(info.mood)).c_str());
         }
         if (lit && model.lights.mood == Mood::daylight) draw_hour(model);
     }

@@ -161,9 +161,9 @@ bool in_rooms(const Site& site) {
 Light daylight(const Site& site, const gi::SceneCamera& camera) {
     glm::dvec3 towards = left_of_view(camera, 50, 42);
     if (site.kind == SiteKind::terrain) towards = north_west(40);
-    if (in_rooms(site)) {  // from the side of the room, as through its windows
+    if (in_rooms(site)) {  // through its windows, or where none was found, from its side
         const glm::dvec3 ahead = site.inside->ahead;
-        towards = normalize(glm::dvec3(-ahead.y, ahead.x, .7) - .4 * ahead);
+        towards = site.inside->sunward.value_or(normalize(glm::dvec3(-ahead.y, ahead.x, .7) - .4 * ahead));
     }
     gi::SceneLight sun = sun_from(site, towards);
     sun.daylight = true;
@@ -234,7 +234,17 @@ Mood usual_mood(const Site& site) {
 }
 
 std::string_view engine_of(Mood mood) {
-    return mood == Mood::scan_colours ? std::string_view("unlit") : gi::default_engine().name;
+    if (mood == Mood::scan_colours) return "unlit";
+    if (mood == Mood::daylight) {
+        // Lights of `vpl` that stand for the sky are pictures of windows on the walls of a room.
+        const auto environment = gi::find_engine("environment");
+        if (environment && gi::can_run((*environment)->info)) return (*environment)->info.name;
+    }
+    return gi::default_engine().name;
+}
+
+bool shows_moods(std::string_view engine) {
+    return std::ranges::any_of(kMoods, [&](const MoodInfo& info) { return engine_of(info.mood) == engine; });
 }
 
 void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera) {

@@ -34,8 +34,11 @@ std::string_view mood_name(Mood mood);
 
 /// Returns the light that a site is first shown in.
 Mood usual_mood(const Site& site);
-/// Returns the engine that shows a mood: `unlit` for scan colours, the default engine for the others.
+/// Returns the engine that shows a mood: `unlit` for scan colours, `environment` for daylight where this
+/// machine can run it, the default engine for the others.
 std::string_view engine_of(Mood mood);
+/// Whether some mood is shown by this engine. Others were chosen by a person, and stay when the mood changes.
+bool shows_moods(std::string_view engine);
 
 /// Replaces the scene's lights, sky, backdrop and exposure; the points' colours for clay, and from clay.
 /// Light comes from the left of `camera`'s view of objects, and from the north-west for terrain. All

@@ -35,6 +35,8 @@ struct StandingPlace {
     double floor = 0, ceiling = 0;    ///< z, at the eye
     std::vector<glm::dvec3> lamps;    ///< free places below the ceiling along the room, where lamps light it
     AlongWall left_wall;
+    /// The direction of a sun that shines into the room, as through its windows; none if there is no opening.
+    std::optional<glm::dvec3> sunward;
 };
 
 /// What is known about a scan before it is shown.

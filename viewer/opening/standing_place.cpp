@@ -19,6 +19,10 @@ constexpr double kLampSpacing = 5;
 constexpr double kHighestLamp = 4;                  ///< above the floor
 constexpr double kLeastAway = .4, kMostAway = 1.5;  ///< of grazing light from its wall
 
+constexpr double kLitHeight = .3;                    ///< above the floor, where the sun should arrive
+constexpr double kLowestSun = 20, kHighestSun = 50;  ///< degrees
+constexpr double kSunStep = 5;                       ///< degrees
+
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
 constexpr int kAzimuths = 24;
 constexpr double kWalled = .8;  ///< share of blocked directions from which a place is in a room
@@ -160,6 +164,49 @@ AlongWall along_left_wall(const OccupancyGrid& grid, const StandingPlace& place,
     return {from, from + place.ahead * length + left * (away / 2)};
 }
 
+/// Returns places near the floor along the room, which a picture from the standing place shows.
+std::vector<glm::dvec3> places_on_the_floor(const OccupancyGrid& grid, const StandingPlace& place,
+                                            double metre) {
+    constexpr int kAlong = 12, kAside = 5;
+    const glm::dvec3 aside(-place.ahead.y, place.ahead.x, 0);
+    const double height = place.floor + std::max(kLitHeight * metre, 1.5 * grid.cell());
+    std::vector<glm::dvec3> places;
+    for (int i = 0; i < kAlong; ++i) {
+        const glm::dvec3 middle = place.eye + place.ahead * (place.free_ahead * (i + .5) / kAlong);
+        const double left = grid.look(middle, aside).distance, right = grid.look(middle, -aside).distance;
+        for (int j = 0; j < kAside; ++j) {
+            glm::dvec3 at = middle + aside * (left - (left + right) * (j + .5) / kAside);
+            at.z = height;
+            places.push_back(at);
+        }
+    }
+    return places;
+}
+
+/// Returns the direction in which most of the floor sees the sky. Neighbouring azimuths count as well, so
+/// that a single gap between points is no window.
+std::optional<glm::dvec3> sunward_of(const OccupancyGrid& grid, const StandingPlace& place, double metre) {
+    const std::vector<glm::dvec3> places = places_on_the_floor(grid, place, metre);
+    constexpr int kSunAzimuths = 3 * kAzimuths;
+    const auto azimuth = [](int i) { return azimuth_of(i) / 3; };
+    std::optional<glm::dvec3> best;
+    int most = 0;
+    for (double height = kLowestSun; height <= kHighestSun; height += kSunStep) {
+        const double elevation = height * std::numbers::pi / 180;
+        std::array<int, kSunAzimuths> open{};
+        for (int i = 0; i < kSunAzimuths; ++i)
+            for (const glm::dvec3& at : places)
+                open[i] += !grid.look(at, direction(azimuth(i), elevation)).blocked;
+        for (int i = 0; i < kSunAzimuths; ++i) {
+            const int before = open[(i + kSunAzimuths - 1) % kSunAzimuths];
+            const int after = open[(i + 1) % kSunAzimuths];
+            const int light = before && after ? before + 2 * open[i] + after : 0;
+            if (light > most) most = light, best = direction(azimuth(i), elevation);
+        }
+    }
+    return best;
+}
+
 }  // namespace
 
 Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) {
@@ -186,6 +233,7 @@ Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) 
     place.ceiling = best->ceiling;
     place.lamps = places_of_lamps(grid, place, metre);
     place.left_wall = along_left_wall(grid, place, metre);
+    place.sunward = sunward_of(grid, place, metre);
     found.best = place;
     return found;
 }

@@ -50,6 +50,23 @@ TEST(LightEdits, AddCopyAndDelete) {
     EXPECT_TRUE(model.view.scene.lights.empty());
 }
 
+TEST(LightEdits, AMoodBringsItsEngineUnlessAnotherWasChosenByHand) {
+    LitView model;
+    model.view.site.outline = {dvec3(0), dvec3(10)};
+    model.view.site.box = {dvec3(0), dvec3(10)};
+    std::string& engine = model.view.method.engine;
+    engine = "unlit";
+    take_mood(model.lighting(), Mood::daylight);
+    EXPECT_EQ(engine, "environment") << "the tests' machines have OpenCL";
+    take_mood(model.lighting(), Mood::evening);
+    EXPECT_EQ(engine, "vpl");
+    engine = "micro";
+    take_mood(model.lighting(), Mood::daylight);
+    EXPECT_EQ(engine, "micro");
+    take_mood(model.lighting(), Mood::scan_colours);
+    EXPECT_EQ(engine, "unlit");
+}
+
 TEST(LightEdits, TheHourThatWasChosenStaysWhenTheLightIsMadeAnew) {
     LitView model;
     model.view.site.outline = {dvec3(0), dvec3(10)};

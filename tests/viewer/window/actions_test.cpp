@@ -70,7 +70,7 @@ TEST(Actions, MoodsLightWhatIsOpenAndScanColoursNeedNoLight) {
     run_actions(actions, std::array{colours});
     EXPECT_EQ(model.view.method.engine, "unlit");
     run_actions(actions, std::array{daylight});
-    EXPECT_EQ(model.view.method.engine, "vpl");
+    EXPECT_EQ(model.view.method.engine, engine_of(Mood::daylight));
 }
 
 TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {

@@ -22,6 +22,15 @@ void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
     if (!settings.scale) settings.scale = otherwise.scale;
 }
 
+/// Whether an engine has all options that were given.
+bool takes_all(std::string_view engine, const gi::EngineSettings& given) {
+    const auto entry = gi::find_engine(engine);
+    return entry && std::ranges::all_of(gi::engine_options(), [&](const gi::OptionInfo* option) {
+               return !given.has(*option) ||
+                      std::ranges::find((*entry)->info.options, option) != (*entry)->info.options.end();
+           });
+}
+
 /// Returns a prefix such as "vpl, direct: " for the help of an option that not every engine has.
 std::string owners(const gi::OptionInfo& option) {
     std::string names;
@@ -61,7 +70,7 @@ void add_engine_options(Arguments& command, gi::EngineSettings& settings) {
 std::string engine_names() {
     std::string names;
     for (const auto& engine : gi::engines())
-        names += fmt::format("\n  {:<11}{}", engine.info.name, engine.info.description);
+        names += fmt::format("\n  {:<13}{}", engine.info.name, engine.info.description);
     return names;
 }
 
@@ -122,7 +131,7 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command
         .add("--engine", options.render.engine,
              "Method of lighting, see below; without scene, mood and options of an engine: " +
-                 std::string(engine_of(Mood::scan_colours)) + ", else " +
+                 std::string(engine_of(Mood::scan_colours)) + ", in daylight: environment, else " +
                  std::string(gi::default_engine().name))
         .type_name("NAME");
     command.add("--preset", options.render.preset, "Quality against speed, see below")
@@ -164,7 +173,7 @@ Result<void> take_render_settings(DrawingOptions& options) {
     usual.engine = gi::default_engine().name;
     if (!options.mood.empty()) {
         LUCARNE_ASSIGN(const Mood mood, find_mood(options.mood));
-        usual.engine = engine_of(mood);
+        if (takes_all(engine_of(mood), options.render.options)) usual.engine = engine_of(mood);
     } else if (options.scene.empty() && options.render.options.empty()) {
         usual.engine = engine_of(Mood::scan_colours);  // engines that light are asked for by their options
     }
