@@ -20,8 +20,12 @@ constexpr double kHighestLamp = 4;                  ///< above the floor
 constexpr double kLeastAway = .4, kMostAway = 1.5;  ///< of grazing light from its wall
 
 constexpr double kLitHeight = .3;                    ///< above the floor, where the sun should arrive
+constexpr double kFloorInView = 3;                   ///< distance from which level pictures show the floor
 constexpr double kLowestSun = 20, kHighestSun = 50;  ///< degrees
 constexpr double kSunStep = 5;                       ///< degrees
+
+constexpr double kLeastOpen =
+    .05;  ///< share of the floor that a window lights; gaps between points light less
 
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
 constexpr int kAzimuths = 24;
@@ -164,20 +168,22 @@ AlongWall along_left_wall(const OccupancyGrid& grid, const StandingPlace& place,
     return {from, from + place.ahead * length + left * (away / 2)};
 }
 
-/// Returns places near the floor along the room, which a picture from the standing place shows.
+/// Returns places near the floor along the room, where a picture from the standing place shows it.
 std::vector<glm::dvec3> places_on_the_floor(const OccupancyGrid& grid, const StandingPlace& place,
                                             double metre) {
     constexpr int kAlong = 12, kAside = 5;
     const glm::dvec3 aside(-place.ahead.y, place.ahead.x, 0);
     const double height = place.floor + std::max(kLitHeight * metre, 1.5 * grid.cell());
+    const double end = wall_distance(grid, place, place.ahead, metre);
+    const double begin = std::min(kFloorInView * metre, end / 2);
     std::vector<glm::dvec3> places;
     for (int i = 0; i < kAlong; ++i) {
-        const glm::dvec3 middle = place.eye + place.ahead * (place.free_ahead * (i + .5) / kAlong);
+        const glm::dvec3 middle = place.eye + place.ahead * (begin + (end - begin) * (i + .5) / kAlong);
         const double left = grid.look(middle, aside).distance, right = grid.look(middle, -aside).distance;
         for (int j = 0; j < kAside; ++j) {
             glm::dvec3 at = middle + aside * (left - (left + right) * (j + .5) / kAside);
             at.z = height;
-            places.push_back(at);
+            if (grid.look(at, {0, 0, 1}).blocked) places.push_back(at);  // else it is outside
         }
     }
     return places;
@@ -188,9 +194,9 @@ std::vector<glm::dvec3> places_on_the_floor(const OccupancyGrid& grid, const Sta
 std::optional<glm::dvec3> sunward_of(const OccupancyGrid& grid, const StandingPlace& place, double metre) {
     const std::vector<glm::dvec3> places = places_on_the_floor(grid, place, metre);
     constexpr int kSunAzimuths = 3 * kAzimuths;
-    const auto azimuth = [](int i) { return azimuth_of(i) / 3; };
+    const auto azimuth = [](int i) { return 2 * std::numbers::pi * i / kSunAzimuths; };
     std::optional<glm::dvec3> best;
-    int most = 0;
+    int most = static_cast<int>(kLeastOpen * static_cast<double>(places.size()));
     for (double height = kLowestSun; height <= kHighestSun; height += kSunStep) {
         const double elevation = height * std::numbers::pi / 180;
         std::array<int, kSunAzimuths> open{};
@@ -198,9 +204,8 @@ std::optional<glm::dvec3> sunward_of(const OccupancyGrid& grid, const StandingPl
             for (const glm::dvec3& at : places)
                 open[i] += !grid.look(at, direction(azimuth(i), elevation)).blocked;
         for (int i = 0; i < kSunAzimuths; ++i) {
-            const int before = open[(i + kSunAzimuths - 1) % kSunAzimuths];
-            const int after = open[(i + 1) % kSunAzimuths];
-            const int light = before && after ? before + 2 * open[i] + after : 0;
+            const int light = std::min(
+                {open[(i + kSunAzimuths - 1) % kSunAzimuths], open[i], open[(i + 1) % kSunAzimuths]});
             if (light > most) most = light, best = direction(azimuth(i), elevation);
         }
     }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -240,6 +241,38 @@ TEST(Moods, RakingLightStandsBesideAWallAndGrazesIt) {
         EXPECT_TRUE(grazes);
         EXPECT_GT(length(light.target - light.position), 3) << "across most of the wall";
     }
+}
+
+TEST(Moods, DaylightComesThroughTheWindowsOfARoom) {
+    std::vector<dvec3> points;
+    add_faces(points, kRoom, 60000, true, 1);
+    const dvec3 middle = (kRoom[0] + kRoom[1]) / 2.0;
+    for (const int wall : {0, 1}) {  // a window 3 m wide and 1.2 m high in the middle of a long wall
+        std::vector<dvec3> open;
+        for (const dvec3& p : points)
+            if (!(std::abs(p.x - kRoom[wall].x) < 1e-9 && std::abs(p.y - middle.y) < 1.5 &&
+                  std::abs(p.z - 11.6) < .6))
+                open.push_back(p);
+        const Site site = survey_site(open, kRoom, 1);
+        ASSERT_TRUE(site.inside && site.inside->sunward) << wall;
+        const dvec3 towards = *site.inside->sunward;
+        EXPECT_GT(towards.x * (wall ? 1 : -1), .5) << wall;
+        EXPECT_GE(towards.z, std::sin(19.9 * std::numbers::pi / 180));
+        gi::Scene scene;
+        set_mood(scene, Mood::daylight, site, first_view(site, {}));
+        const gi::SceneLight& sun = scene.lights.at(0);
+        EXPECT_LT(glm::distance(glm::normalize(sun.position - sun.target), towards), 1e-6);
+        // Somewhere the sun meets the floor in the picture.
+        double lit = 0;
+        for (double y = kRoom[0].y + .1; y < kRoom[1].y; y += .1)
+            for (double x = kRoom[0].x + .1; x < kRoom[1].x; x += .1) {
+                const dvec3 at(x, y, kRoom[0].z);
+                const dvec3 there = at + towards * ((kRoom[wall].x - x) / towards.x);
+                lit += std::abs(there.y - middle.y) < 1.5 && std::abs(there.z - 11.6) < .6;
+            }
+        EXPECT_GT(lit * .01, .5) << "m2";
+    }
+    EXPECT_FALSE(room().inside->sunward) << "no window";
 }
 
 TEST(Moods, OnlyClayHidesTheScansColours) {
