@@ -128,7 +128,8 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
         }
     const auto begin = Clock::now();
     LUCARNE_ASSIGN(const auto source, open_input(options.input));
-    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, *source));
+    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(drawing_options, *source));
+    drawing_options.render.engine = loaded.engine;
     loaded.first_view = false;  // the path has the cameras
     LUCARNE_ASSIGN(const auto pipeline,
                    open_pipeline(*device, source, drawing_options, drawing, loaded.scene));
@@ -156,7 +157,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     }
     conditions.inputs = options.input.paths;
     conditions.path = options.path;
-    conditions.engine = plan.engine;
+    conditions.engine = loaded.engine;
     conditions.preset = options.drawing.render.preset;
     conditions.mode = options.realtime ? "realtime" : "wait";
     conditions.size = drawing.size;

@@ -195,6 +195,7 @@ Result<void> render(RenderOptions options) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());  // starts while the input is checked
     LUCARNE_ASSIGN(const auto source, opening.get());
     LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, *source));
+    options.drawing.render.engine = loaded.engine;
     FrameRequest request;
     LUCARNE_ASSIGN(request.camera, find_camera(loaded.scene, options.camera));
     request.front_only = loaded.site && looks_in_from_outside(*loaded.site, request.camera);

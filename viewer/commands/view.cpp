@@ -42,6 +42,7 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     start.scene = std::move(loaded.scene);
     if (options.drawing.scene.empty()) start.scene.look.axes = start.scene.look.scale_bar = true;
     start.mood = loaded.mood;
+    start.engine = loaded.engine;
     start.site = loaded.site ? std::move(*loaded.site) : survey_site(source);
     start.box = start.site.box;
     start.metres_per_unit = source.header().metres_per_unit;

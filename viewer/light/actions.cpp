@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "gi/registry.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
 #include "viewer/opening/moods.h"
@@ -105,13 +106,19 @@ void light_for_place(const Lighting& model) {
     const bool colours = *model.lights.mood == Mood::scan_colours;
     const gi::Backdrop backdrop = model.view.scene.look.backdrop;
     set_mood_here(model.view, colours ? usual_mood(site_about(model.view)) : *model.lights.mood);
-    if (colours) model.view.scene.look.backdrop = backdrop;
+    if (colours) {
+        model.view.scene.look.backdrop = backdrop;
+        return;
+    }
+    std::string& engine = model.view.method.engine;
+    if (shows_moods(engine) && !gi::engine_is(engine, &gi::EngineInfo::unlit))
+        engine = engine_of(*model.lights.mood, site_about(model.view).kind);
 }
 
 void take_mood(const Lighting& model, Mood mood) {
     set_mood_here(model.view, mood);
     if (mood == Mood::scan_colours || shows_moods(model.view.method.engine))
-        model.view.method.engine = engine_of(mood);
+        model.view.method.engine = engine_of(mood, site_about(model.view).kind);
     model.lights.selected = 0;
     model.lights.mood = mood;
 }

@@ -64,7 +64,8 @@ void draw_mood_bar(const Lighting& model) {
                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
                                    ImGuiWindowFlags_NoMove;
     if (ImGui::Begin("##moods", nullptr, flags)) {
-        const bool lit = model.view.method.engine != engine_of(Mood::scan_colours);
+        const SiteKind kind = model.view.site.kind;
+        const bool lit = model.view.method.engine != engine_of(Mood::scan_colours, kind);
         for (const MoodInfo& info : moods()) {
             if (info.mood != moods().front().mood) ImGui::SameLine();
             const bool chosen = model.lights.mood == info.mood && lit == (info.mood != Mood::scan_colours);
@@ -74,7 +75,7 @@ void draw_mood_bar(const Lighting& model) {
             if (chosen) ImGui::PopStyleColor();
             if (ImGui::IsItemHovered())
                 ImGui::SetTooltip("%s\nEngine: %s", info.help.data(),
-                                  gi::label_of(engine_of(info.mood)).c_str());
+                                  gi::label_of(engine_of(info.mood, kind)).c_str());
         }
         if (lit && model.lights.mood == Mood::daylight) draw_hour(model);
     }

@@ -233,9 +233,12 @@ Mood usual_mood(const Site& site) {
     return in_rooms(site) ? Mood::evening : Mood::daylight;
 }
 
-std::string_view engine_of(Mood mood) {
+std::string_view engine_of(Mood mood, SiteKind kind) {
     if (mood == Mood::scan_colours) return "unlit";
-    if (mood == Mood::daylight) {
+    const bool outside = kind != SiteKind::interior;
+    const bool under_sky =
+        mood == Mood::daylight || (outside && (mood == Mood::evening || mood == Mood::raking_light));
+    if (under_sky) {
         // Lights of `vpl` that stand for the sky are pictures of windows on the walls of a room.
         const auto environment = gi::find_engine("environment");
         if (environment && gi::can_run((*environment)->info)) return (*environment)->info.name;
@@ -244,7 +247,8 @@ std::string_view engine_of(Mood mood) {
 }
 
 bool shows_moods(std::string_view engine) {
-    return std::ranges::any_of(kMoods, [&](const MoodInfo& info) { return engine_of(info.mood) == engine; });
+    return std::ranges::any_of(
+        kMoods, [&](const MoodInfo& info) { return engine_of(info.mood, SiteKind::interior) == engine; });
 }
 
 void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera) {

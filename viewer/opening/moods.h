@@ -34,9 +34,10 @@ std::string_view mood_name(Mood mood);
 
 /// Returns the light that a site is first shown in.
 Mood usual_mood(const Site& site);
-/// Returns the engine that shows a mood: `unlit` for scan colours, `environment` for daylight where this
-/// machine can run it, the default engine for the others.
-std::string_view engine_of(Mood mood);
+/// Returns the engine that shows a mood: `unlit` for scan colours; `environment` where a sky lights the site
+/// (by day, and outside also in the evening and for raking light) if this machine can run it; else the
+/// default engine.
+std::string_view engine_of(Mood mood, SiteKind kind);
 /// Whether some mood is shown by this engine. Others were chosen by a person, and stay when the mood changes.
 bool shows_moods(std::string_view engine);
 

@@ -169,6 +169,7 @@ void ViewSession::take_extent() {
                           CameraRig(model_.view.home).camera().target == camera.target);
     model_.view.scene = start->scene;
     model_.lights.mood = start->mood;
+    if (first && !start->engine.empty()) model_.view.method.engine = start->engine;
     model_.view.home = home;
     if (first)
         model_.view.go_to(home);

@@ -52,6 +52,12 @@ TEST_F(FirstViewCommand, IsThatOfScanColoursUnlessAnEngineIsToLightTheScan) {
     EXPECT_THAT(render(object_, "bounces.png", "--bounces 1").output, HasSubstr("vpl, preset interactive"));
 }
 
+TEST_F(FirstViewCommand, TheEveningHasTheEngineThatSuitsThePlace) {
+    EXPECT_THAT(render(object_, "dusk.png", "--mood evening").output, HasSubstr("environment, "));
+    EXPECT_THAT(render(room_, "lamps.png", "--mood evening").output, HasSubstr("vpl, "));
+    EXPECT_THAT(render(object_, "own.png", "--mood evening --engine vpl").output, HasSubstr("vpl, "));
+}
+
 TEST_F(FirstViewCommand, OfARoomIsFromInside) {
     EXPECT_THAT(render(room_, "a.png", "").output, HasSubstr("interior: camera 'inside' at"));
     EXPECT_THAT(render(room_, "lit.png", "--engine direct").output, HasSubstr("mood evening"));

@@ -58,7 +58,7 @@ TEST(LightEdits, AMoodBringsItsEngineUnlessAnotherWasChosenByHand) {
     engine = "unlit";
     take_mood(model.lighting(), Mood::daylight);
     EXPECT_EQ(engine, "environment") << "the tests' machines have OpenCL";
-    take_mood(model.lighting(), Mood::evening);
+    take_mood(model.lighting(), Mood::museum);
     EXPECT_EQ(engine, "vpl");
     engine = "micro";
     take_mood(model.lighting(), Mood::daylight);

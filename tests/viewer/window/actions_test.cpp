@@ -70,7 +70,7 @@ TEST(Actions, MoodsLightWhatIsOpenAndScanColoursNeedNoLight) {
     run_actions(actions, std::array{colours});
     EXPECT_EQ(model.view.method.engine, "unlit");
     run_actions(actions, std::array{daylight});
-    EXPECT_EQ(model.view.method.engine, engine_of(Mood::daylight));
+    EXPECT_EQ(model.view.method.engine, engine_of(Mood::daylight, SiteKind::object));
 }
 
 TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
@@ -84,6 +84,7 @@ TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     site.inside.emplace();
     site.inside->eye = {5, 5, 1.6};
     site.inside->lamps = {{5, 5, 2.5}};
+    model.view.method.engine = "vpl";
     const auto actions = bound_actions(model);
     const auto run = [&](const std::string& name) {
         for (const BoundAction& action : actions)
@@ -92,9 +93,11 @@ TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     run("Evening");
     ASSERT_EQ(model.view.scene.lights.size(), 1u);
     EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::directional) << "a low sun";
+    EXPECT_EQ(model.view.method.engine, "environment");
     run("Go inside");
     ASSERT_EQ(model.view.scene.lights.size(), 1u);
     EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::disc) << "a lamp";
+    EXPECT_EQ(model.view.method.engine, "vpl");
     EXPECT_TRUE(model.view.inside());
     model.lights.mood.reset();  // as when a light is changed
     model.view.scene.lights[0].position.z = 1;
@@ -105,6 +108,7 @@ TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     model.view.picture = std::make_shared<Picture>();
     run("Go outside");
     EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::directional);
+    EXPECT_EQ(model.view.method.engine, "environment");
     ImGui::DestroyContext();
 }
 

@@ -131,8 +131,8 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command
         .add("--engine", options.render.engine,
              "Method of lighting, see below; without scene, mood and options of an engine: " +
-                 std::string(engine_of(Mood::scan_colours)) + ", in daylight: environment, else " +
-                 std::string(gi::default_engine().name))
+                 std::string(engine_of(Mood::scan_colours, SiteKind::object)) +
+                 ", under a mood's sky: environment, else " + std::string(gi::default_engine().name))
         .type_name("NAME");
     command.add("--preset", options.render.preset, "Quality against speed, see below")
         .show_default(std::string(kDefaultPreset))
@@ -173,9 +173,12 @@ Result<void> take_render_settings(DrawingOptions& options) {
     usual.engine = gi::default_engine().name;
     if (!options.mood.empty()) {
         LUCARNE_ASSIGN(const Mood mood, find_mood(options.mood));
-        if (takes_all(engine_of(mood), options.render.options)) usual.engine = engine_of(mood);
+        const std::string_view engine = engine_of(mood, SiteKind::interior);
+        options.engine_by_mood = options.render.engine.empty() && takes_all(engine, options.render.options);
+        if (options.engine_by_mood) usual.engine = engine;
     } else if (options.scene.empty() && options.render.options.empty()) {
-        usual.engine = engine_of(Mood::scan_colours);  // engines that light are asked for by their options
+        usual.engine = engine_of(Mood::scan_colours,
+                                 SiteKind::object);  // engines that light are asked for by their options
     }
     usual.preset = kDefaultPreset;
     fill(options.render, usual);
@@ -206,6 +209,7 @@ Result<Drawing> resolve(const DrawingOptions& options) {
 
 Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
     SceneForScan loaded;
+    loaded.engine = options.render.engine;
     gi::Scene& scene = loaded.scene;
     LUCARNE_ASSIGN(const ImageSize size, parse_size("--size", options.size));
     const double aspect = static_cast<double>(size.width) / size.height;
@@ -224,8 +228,10 @@ Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree:
         const Site& site = loaded.site.emplace(survey_site(source));
         if (!options.mood.empty()) {
             LUCARNE_ASSIGN(loaded.mood, find_mood(options.mood));
+            const std::string_view engine = engine_of(*loaded.mood, site.kind);
+            if (options.engine_by_mood && takes_all(engine, options.render.options)) loaded.engine = engine;
         } else {
-            const bool lit = options.render.engine != engine_of(Mood::scan_colours);
+            const bool lit = options.render.engine != engine_of(Mood::scan_colours, site.kind);
             loaded.mood = lit ? usual_mood(site) : Mood::scan_colours;
         }
         loaded.first_view = !own_cameras;

@@ -20,7 +20,8 @@ namespace lucarne::viewer {
 struct DrawingOptions {
     std::string scene;  ///< path; empty: light and cameras for what the scan shows
     std::string mood;   ///< replaces the scene's light; empty: the scene's, else the scan's own colours
-    gi::RenderSettings render;  ///< engine, preset, and single settings that override the preset
+    gi::RenderSettings render;    ///< engine, preset, and single settings that override the preset
+    bool engine_by_mood = false;  ///< the engine is that of the mood, for want of another choice
     std::string size = "1280x720";
     std::string points;
     std::optional<double> exposure;
@@ -36,7 +37,8 @@ struct DrawingOptions {
 void add_drawing_options(Arguments& command, DrawingOptions& options);
 
 /// Completes options.render: what the command line leaves open comes from the scene file, else from the
-/// defaults. Afterwards engine and preset are set. Errors: those of reading the scene file.
+/// defaults. Afterwards engine and preset are set; load_scene_for() may choose another engine if
+/// `engine_by_mood` is true. Errors: those of reading the scene file.
 Result<void> take_render_settings(DrawingOptions& options);
 
 /// Drawing options after look-up and checks.
@@ -55,6 +57,7 @@ struct SceneForScan {
     std::optional<Site> site;  ///< what the scan shows; none if the scene file has said it all
     std::optional<Mood> mood;  ///< the light is this mood's; set together with `site`
     bool first_view = false;   ///< the first camera is the first view of what the scan shows
+    std::string engine;        ///< the options' or, with `engine_by_mood`, that of the mood for this site
 };
 
 /// Loads the scene file. Without one the scan is shown by its own colours, or by the light that suits it if
