@@ -149,7 +149,8 @@ struct TrueScene {
 struct DiscFit {
     double distance = 0;  ///< of its centre, m
     double angle = 0;     ///< of its normal, degrees
-    double outside = 0;   ///< share of its area that is farther than kOtherSurface off the surface
+    double outside = 0;   ///< share of its area that is farther than kOtherSurface off the surface; what lies
+                          ///< beyond its line is not part of the disc
     bool at_crease = false;
 };
 
@@ -160,13 +161,17 @@ class NearestSurface {
 
     double distance(const glm::dvec3& position) const { return geometry_.closest(position)->distance; }
 
-    DiscFit fit(const glm::dvec3& centre, const glm::dvec3& normal, double radius) const {
+    /// `edge`: the line at which the disc ends (gi/shared/edge.h), 1/m; zero: none.
+    DiscFit fit(const glm::dvec3& centre, const glm::dvec3& normal, double radius,
+                const glm::dvec3& edge) const {
         const auto nearest = geometry_.closest(centre);
         DiscFit fit{nearest->distance, plane_angle(nearest->normal, normal), 0, false};
         const Axes own(normal), true_axes(nearest->normal);
         for (int i = 0; i < kSamples; ++i) {
             const double reach = radius * std::sqrt((i + .5) / kSamples);
-            if (distance(centre + own.at(i, reach)) > kOtherSurface) fit.outside += 1.0 / kSamples;
+            const glm::dvec3 offset = own.at(i, reach);
+            if (dot(edge, offset) > 1) continue;
+            if (distance(centre + offset) > kOtherSurface) fit.outside += 1.0 / kSamples;
         }
         for (int i = 0; i < kSamples; ++i)
             for (const double side :

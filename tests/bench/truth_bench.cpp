@@ -169,7 +169,7 @@ Result<void> discs(const Case& measured, const Scan& scan, const io::SceneGeomet
     parallel_ranges(fits.size(), 256, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const gi::Surfel& s = surfels[i * step];
-            if (dot(s.normal, s.normal) > .5f) fits[i] = surface.fit(s.position, s.normal, s.radius);
+            if (dot(s.normal, s.normal) > .5f) fits[i] = surface.fit(s.position, s.normal, s.radius, s.edge);
         }
     });
     std::vector<double> angles, creases, elsewhere;
