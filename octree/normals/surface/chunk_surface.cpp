@@ -11,6 +11,7 @@
 
 #include "io/core/parallel.h"
 #include "octree/normals/surface/crease.h"
+#include "octree/normals/surface/earned.h"
 #include "octree/normals/surface/surface_sample.h"
 #include "octree/normals/surface/surface_share.h"
 #include "octree/tree/footprint.h"
@@ -38,6 +39,8 @@ constexpr float kMostShares = 4, kWide = 1.5f;
 /// A site whose neighbourhood is this many times wider than the distance from one site to the next nearby may
 /// hang in the air beside a much denser surface. The ratio is 2 to 3 on a surface of even density.
 constexpr double kSparse = 8;
+/// From this ratio on a site must have earned its size (earned.h).
+constexpr double kThin = 4;
 /// From this ratio on the group of points in the air may be farther from the surface than kWindow.
 constexpr double kVerySparse = 24, kFarWindow = 4;
 /// If the window of such a site holds this many times what a surface of the site's own density has there, the
@@ -105,7 +108,8 @@ class SiteEstimator {
         const float spacing =
             std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(nearest.count - 1));
         float crowding = 0;
-        if (const double sparser = reach / step_near(site); !whole_cloud && sparser > kSparse) {
+        const double sparser = whole_cloud ? 0 : reach / step_near(site);
+        if (sparser > kSparse) {
             const double times = sparser > kVerySparse ? kFarWindow : kWindow;
             if (!around.knows(times * reach)) return times * reach;
             crowding = crowding_at(around, reach, times);
@@ -170,26 +174,39 @@ class SiteEstimator {
         cell.cut(*patch, heights_, fit.layer, side.has_value());
         if (side) cell.cut_at(side->other, side->offset);
         const float rim = std::numbers::sqrt2_v<float> / 2 * spacing;
+        float area = 0;
+        std::optional<glm::vec3> outward;
         if (cell.open()) {
             if (!around.knows(cell.widest_search())) return cell.widest_search();
             const auto view = around.around(std::min(cell.widest_search(), cell.widest_cut()));
             const size_t beyond = cell.cut_open(view.tile, view.centre, static_cast<float>(view.radius));
             if (apart && !cell.closed()) return leave_out(site);
             if (beyond < view.tile.count) connect_rim(site, view, beyond);
-            if (!side) add_border(site, cell, around, fit, rim);  // gathers other points into `view`
-            surface_.areas[site] = cell.area_at_rim();
+            outward = cell.outward();
+            area = cell.area_at_rim();
         } else {
-            surface_.areas[site] = cell.area();
-            if (!side && cell.outward()) {
-                if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
-                add_border(site, cell, around, fit, rim);
+            outward = cell.outward();
+            area = cell.area();
+        }
+        const bool wide = area > kWide * spacing * spacing;
+        if (wide || apart || sparser > kThin) {
+            const double look = kEarnedLook * surfel_radius(area, 0);
+            if (!around.knows(look)) return look;
+            const auto view = around.around(look);
+            const WideDisc disc{fit.normal, surfel_radius(area, 0)};
+            const float earned = earned_area(view.tile, view.centre, static_cast<float>(view.radius), disc);
+            if (apart && earned < area) return leave_out(site);
+            area = std::min(area, earned);
+            // A point in the air has a wide cell although its neighbours have narrow ones.
+            if (wide && !apart) {
+                const float most = kMostShares * share_of_neighbours(nearest);
+                if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
             }
         }
-        // A point in the air has a wide cell although its neighbours have narrow ones.
-        float& area = surface_.areas[site];
-        if (!apart && area > kWide * spacing * spacing) {
-            const float most = kMostShares * share_of_neighbours(nearest);
-            if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
+        surface_.areas[site] = area;
+        if (!side && outward) {
+            if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
+            add_border(site, *outward, around, fit, rim);
         }
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
         if (whole != glm::vec3(0.0f)) {
@@ -258,13 +275,11 @@ class SiteEstimator {
     }
 
     /// `spacing`: of the points if the neighbours fill half a disc.
-    void add_border(uint32_t site, const ShareCell& cell, ChunkNeighbours::Surroundings& around,
+    void add_border(uint32_t site, const glm::vec3& outward, ChunkNeighbours::Surroundings& around,
                     const SurfaceFit& fit, float spacing) {
-        const auto outward = cell.outward();
-        if (!outward) return;
         const auto view = around.around(kBorderLook * spacing);
         const float level = kRoughLevel * std::sqrt(fit.variance) + kFlatLevel * spacing;
-        const Rim rim{tangent_frame(fit.normal), *outward, spacing, level};
+        const Rim rim{tangent_frame(fit.normal), outward, spacing, level};
         if (const auto border = find_border(view.tile, view.centre, rim))
             lines_.push_back({site, fit.normal, border->toward, border->distance, border->beyond});
     }

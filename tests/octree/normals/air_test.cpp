@@ -1,0 +1,176 @@
+// Discs in the air: whoever is much larger than what is around must lie in its plane.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "octree/normals/surface/earned.h"
+#include "tests/octree/normals/surface_truth.h"
+
+namespace lucarne::octree {
+namespace {
+
+using namespace testing;
+
+constexpr double kWallSpacing = 0.01;
+
+/// Adds a rectangle of random points, `spacing` apart on average, and returns the first one's index.
+size_t add_wall(Cloud& cloud, const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v,
+                double spacing, Random& random, double noise = 0.001) {
+    const size_t first = cloud.points.size();
+    const glm::dvec3 n = glm::normalize(glm::cross(u, v));
+    const auto count = static_cast<size_t>(glm::length(u) * glm::length(v) / (spacing * spacing));
+    for (size_t i = 0; i < count; ++i) {
+        const double along = random.uniform(), up = random.uniform();
+        cloud.points.push_back(corner + along * u + up * v + noise * gaussian(random) * n);
+        cloud.normals.push_back(n);
+        cloud.stations.push_back(0);
+    }
+    return first;
+}
+
+/// The widest disc and the sum of the shares of points from `first` on.
+struct Drawn {
+    double widest = 0, area = 0;
+    size_t count = 0;
+};
+Drawn drawn(const Estimate& found, size_t first, size_t end) {
+    Drawn sum;
+    for (size_t i = first; i < end; ++i) {
+        const double radius = drawn_radius(found, i);
+        sum.widest = std::max(sum.widest, radius);
+        if (radius > 0) sum.area += found.areas[i], ++sum.count;
+    }
+    return sum;
+}
+
+/// Two walls of different depth with points scattered between them, of which no plane is right.
+TEST(Air, PointsScatteredBetweenWallsAreSmall) {
+    Random random(11);
+    Cloud cloud;
+    add_wall(cloud, {0, 0, 0}, {2, 0, 0}, {0, 1, 0}, kWallSpacing, random);
+    add_wall(cloud, {0, 0, 0.4}, {1, 0, 0}, {0, 1, 0}, kWallSpacing, random);
+    const size_t first = cloud.points.size();
+    for (int i = 0; i < 150; ++i)
+        cloud.points.emplace_back(0.9 + 0.3 * random.uniform(), random.uniform(),
+                                  0.05 + 0.3 * random.uniform());
+    cloud.normals.resize(cloud.points.size());
+    const Estimate found = estimate(cloud);
+    const Drawn air = drawn(found, first, cloud.points.size());
+    std::printf("in the air: %zu discs, shares %.3f m2, radius up to %.3f m\n", air.count, air.area,
+                air.widest);
+    EXPECT_LT(air.widest, 0.12);
+    EXPECT_LT(air.area, 0.08);
+    EXPECT_NEAR(drawn(found, 0, first).area, 3, 0.06);
+}
+
+TEST(Air, SparseWallsBesideDenseFloorsAreWhole) {
+    Random random(12);
+    Cloud cloud;
+    add_wall(cloud, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, kWallSpacing, random);
+    const size_t wall = add_wall(cloud, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 6 * kWallSpacing, random);
+    const Estimate found = estimate(cloud);
+    EXPECT_NEAR(drawn(found, wall, cloud.points.size()).area, 1, 0.15);
+    // Rays from before the wall, also near the floor, hit its discs.
+    const DiscScene discs(cloud, found);
+    int through = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::dvec3 at(0.1 + 0.8 * random.uniform(), 1, 0.01 + 0.89 * random.uniform());
+        through += !discs.cast(at - glm::dvec3(0, 0.5, 0), {0, 1, 0});
+    }
+    EXPECT_LE(through, 80) << "just above the floor; 186 if the floor's density bounds the wall's discs";
+}
+
+/// A pane has few points, in the plane of its wall or behind it. They keep their size: nothing is known
+/// better.
+TEST(Air, PointsOfAPaneStay) {
+    for (const double behind : {0.0, 0.1}) {
+        Random random(13);
+        Cloud cloud;
+        add_wall(cloud, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, kWallSpacing, random);
+        std::erase_if(cloud.points, [](const auto& p) { return glm::length(p - glm::dvec3(1, 1, 0)) < 0.5; });
+        cloud.normals.resize(cloud.points.size());
+        cloud.stations.resize(cloud.points.size());
+        const size_t pane = add_wall(cloud, {0.65, 0.65, -behind}, {0.7, 0, 0}, {0, 0.7, 0}, 0.08, random);
+        const Drawn drawn_pane = drawn(estimate(cloud), pane, cloud.points.size());
+        EXPECT_GE(drawn_pane.count, (cloud.points.size() - pane) / 2) << behind;
+        EXPECT_GT(drawn_pane.area, 0.25) << behind;
+    }
+}
+
+TEST(Air, RailingsAndWiresBeforeWallsStay) {
+    for (const double thick : {0.02, 0.001}) {
+        Random random(14);
+        Cloud cloud;
+        add_wall(cloud, {0, 0, 0}, {2, 0, 0}, {0, 1, 0}, kWallSpacing, random);
+        const size_t bars = cloud.points.size();
+        for (int i = 0; i < 6000; ++i) {
+            const double turn = 2 * std::numbers::pi * random.uniform(),
+                         bar = 0.2 * std::floor(10 * random.uniform());
+            const glm::dvec3 n(std::cos(turn), 0, std::sin(turn));
+            cloud.points.push_back(glm::dvec3(bar, random.uniform(), 0.3) + thick * n);
+            cloud.normals.push_back(n);
+            cloud.stations.push_back(0);
+        }
+        const Drawn rail = drawn(estimate(cloud), bars, cloud.points.size());
+        EXPECT_GE(rail.count, 6000u * 9 / 10) << thick;
+        EXPECT_LT(rail.widest, 0.05) << thick;
+    }
+}
+
+TEST(Air, ADiscInACrowdMustLieInItsPlane) {
+    Random random(15);
+    // Of a disc of radius 1 in the plane z = 0 among points of planes that are tilted against it.
+    const auto earned = [&](size_t points, const std::vector<double>& tilts) {
+        Tile tile;
+        for (size_t i = 0; i < points; ++i) {
+            const double a = 4 * random.uniform() - 2, b = 4 * random.uniform() - 2,
+                         tilt = tilts[i % tilts.size()];
+            tile.x.push_back(static_cast<float>(a));
+            tile.y.push_back(static_cast<float>(b * std::cos(tilt)));
+            tile.z.push_back(static_cast<float>(b * std::sin(tilt)));
+        }
+        tile.count = points;
+        return earned_area(tile, glm::vec3(0.0f), 100, {{0, 0, 1}, 1});
+    };
+    EXPECT_TRUE(std::isinf(earned(2000, {0})));
+    EXPECT_TRUE(std::isinf(earned(2000, {0, 1.5}))) << "where two walls meet";
+    EXPECT_TRUE(std::isinf(earned(60, {1}))) << "no crowd";
+    EXPECT_TRUE(std::isinf(earned(0, {1})));
+    // The points have 16 square units of their plane.
+    EXPECT_NEAR(earned(2000, {1}), 16.0 / 2000, 1e-3);
+}
+
+/// Every share of hostile clouds is finite, and no disc is wider than the cloud.
+TEST(Air, HostileCloudsAreDefined) {
+    Random random(16);
+    Cloud pile, pair, noise, strays;
+    pile.points.assign(5000, glm::dvec3(1, 2, 3));
+    pair.points = {{0, 0, 0}};
+    const auto place = [&] { return glm::dvec3(random.uniform(), random.uniform(), random.uniform()); };
+    for (int i = 0; i < 5000; ++i) noise.points.push_back(place());
+    for (int i = 0; i < 20000; ++i) strays.points.push_back(i < 2000 ? 0.1 * place() : 10.0 * place());
+    // A tree: each twig carries three of .4 times its length.
+    Cloud tree;
+    const auto grow = [&](const auto& self, const glm::dvec3& from, const glm::dvec3& to, int depth) -> void {
+        for (int i = 0; i < 40; ++i) tree.points.push_back(glm::mix(from, to, random.uniform()));
+        for (int twig = 0; twig < 3 && depth > 0; ++twig)
+            self(self, to, to + 0.4 * glm::length(to - from) * glm::normalize(place() - 0.5), depth - 1);
+    };
+    grow(grow, glm::dvec3(0.0), glm::dvec3(0, 0, 1), 5);
+    for (Cloud* cloud : {&pile, &pair, &noise, &strays, &tree}) {
+        cloud->normals.resize(cloud->points.size());
+        const Estimate found = estimate(*cloud);
+        glm::dvec3 low(INFINITY), high(-INFINITY);
+        for (const auto& p : cloud->points) low = glm::min(low, p), high = glm::max(high, p);
+        for (size_t i = 0; i < cloud->points.size(); ++i) {
+            ASSERT_TRUE(std::isfinite(found.areas[i]) && found.areas[i] >= 0);
+            ASSERT_LE(drawn_radius(found, i), glm::length(high - low));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::octree
