@@ -58,6 +58,20 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
         drop(site, crowding < kRough ? kSilhouette : kCurtain);
 }
 
+/// Narrows the discs at outer edges beyond which several planes lie, as at the corner of a box. In a corner
+/// of a room they end behind the other sides, and their size keeps the corner closed. The station tells which
+/// of the two it is.
+void narrow_at_corners(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
+    for (const SiteLine& line : surface.lines) {
+        const glm::dvec3& ray = ray_of_site[line.site];
+        const double facing = glm::dot(glm::dvec3(line.normal), ray);
+        if (!(std::abs(facing) > kGrazing * glm::length(ray))) continue;
+        if ((facing > 0 ? line.beyond : turned(line.beyond)) != Beyond::falls) continue;
+        float& area = surface.areas[line.site];
+        area = std::min(area, line.most_area);
+    }
+}
+
 /// Drops the sides of creases that turn far and have no station, with their lines.
 void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
     auto line = surface.lines.begin();
@@ -106,7 +120,10 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
     neighbours.drop_indices();
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
-    if (!rays.empty()) drop_curtains(surface, rays);
+    if (!rays.empty()) {
+        drop_curtains(surface, rays);
+        narrow_at_corners(surface, rays);
+    }
     drop_doubtful_sides(surface, rays);
     agree_on_lines(neighbours, surface);
     ChunkOrientation orientation;

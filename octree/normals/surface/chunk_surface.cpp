@@ -50,11 +50,14 @@ constexpr float kCrowded = 8;
 constexpr float kMostCrowded = 64;
 /// A disc at an outer edge ends that many spacings beyond the line where the two planes meet, and by this
 /// share of the other plane's roughness farther, so that the discs of both sides meet there; but at most
-/// kOverEdge spacings.
+/// kOverEdge spacings. Where several planes lie beyond, the whole disc reaches no farther than that.
 constexpr float kBeyondEdge = 0.05f, kRoughEdge = 0.25f, kOverEdge = 0.5f;
 /// At a border points up to so many deviations of the heights, and so many spacings more, over the tangent
 /// plane belong to the surface.
 constexpr float kRoughLevel = 3.0f, kFlatLevel = 0.1f;
+/// Where the points beyond a crease lie up to so many spacings off a plane, they are one plane, and the cell
+/// ends where it begins. Else their points cut the cell, too: several planes, as at the corner of a box.
+constexpr float kRoughSide = 0.5f;
 constexpr size_t kStepSites = 256;  ///< sites whose steps are compared: a piece of the Morton curve
 
 /// The median distance from one site to the next along the Morton curve, for each kStepSites sites.
@@ -84,8 +87,13 @@ SiteLine line_at(uint32_t site, const Side& side, float spacing) {
     const float slope = glm::length(across);  // over .4: planes at a crease meet at 24 degrees and more
     const float beyond =
         std::min(kBeyondEdge * spacing + kRoughEdge * side.roughness / slope, kOverEdge * spacing);
-    return {site, n, across / (side.offset < 0 ? -slope : slope), std::abs(side.offset) / slope + beyond,
-            side.rises ? Beyond::rises : Beyond::falls};
+    SiteLine line{site, n, across / (side.offset < 0 ? -slope : slope),
+                  std::abs(side.offset) / slope + beyond, side.rises ? Beyond::rises : Beyond::falls};
+    if (side.roughness > kRoughSide * spacing) {
+        const float radius = std::abs(side.offset) / slope + kOverEdge * spacing;
+        line.most_area = std::numbers::pi_v<float> / kCoverageRaw * radius * radius;
+    }
+    return line;
 }
 
 /// Estimates the surface at one site after another; one per thread.
@@ -171,7 +179,9 @@ class SiteEstimator {
         if (patch != &window_) seen = reach;  // at least
         ShareCell cell(fit.normal, reach, nearest.count - 1, static_cast<float>(seen));
         heights_over(*patch, fit.normal, heights_);
-        cell.cut(*patch, heights_, fit.layer, side.has_value());
+        const bool rough = side && side->roughness > kRoughSide * spacing;
+        if (side && !rough) leave_to_other_side(*side);
+        cell.cut(*patch, heights_, fit.layer, rough);
         if (side) cell.cut_at(side->other, side->offset);
         const float rim = std::numbers::sqrt2_v<float> / 2 * spacing;
         float area = 0;
@@ -192,16 +202,10 @@ class SiteEstimator {
         if (wide || apart || sparser > kThin) {
             const double look = kEarnedLook * surfel_radius(area, 0);
             if (!around.knows(look)) return look;
-            const auto view = around.around(look);
-            const WideDisc disc{fit.normal, surfel_radius(area, 0)};
-            const float earned = earned_area(view.tile, view.centre, static_cast<float>(view.radius), disc);
+            const float earned = earned_at(around, fit.normal, area);
             if (apart && earned < area) return leave_out(site);
             area = std::min(area, earned);
-            // A point in the air has a wide cell although its neighbours have narrow ones.
-            if (wide && !apart) {
-                const float most = kMostShares * share_of_neighbours(nearest);
-                if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
-            }
+            if (wide && !apart) area = std::min(area, most_beside(nearest, area));
         }
         surface_.areas[site] = area;
         if (!side && outward) {
@@ -238,6 +242,20 @@ class SiteEstimator {
                                  steps_.begin() + static_cast<ptrdiff_t>(last + 1));
     }
 
+    /// The largest share that a site of a share has earned; infinity: any.
+    float earned_at(ChunkNeighbours::Surroundings& around, const glm::vec3& normal, float area) {
+        const WideDisc disc{normal, surfel_radius(area, 0)};
+        const auto view = around.around(kEarnedLook * disc.radius);
+        return earned_area(view.tile, view.centre, static_cast<float>(view.radius), disc);
+    }
+
+    /// The largest share of a site beside its neighbours: a point in the air has a wide cell although they
+    /// have narrow ones.
+    float most_beside(const Patch& nearest, float area) {
+        const float most = kMostShares * share_of_neighbours(nearest);
+        return area > most && !fitter_.lies_in_plane_of_others(nearest) ? most : area;
+    }
+
     /// The number of points within `times` the reach, divided by that of a sheet as sparse as the site's
     /// neighbourhood; 0 where it is certainly not more than kCrowded.
     float crowding_at(ChunkNeighbours::Surroundings& around, double reach, double times) {
@@ -253,6 +271,16 @@ class SiteEstimator {
         surface_.areas[site] = kStrayArea;
         surface_.edges[site].fill(kNoSite);
         return 0;
+    }
+
+    /// Takes the window's points that lie nearer to the other plane of a crease than to their own out of the
+    /// layer that cuts the cell: the cell reaches to the line where the planes meet, not half-way to them.
+    void leave_to_other_side(const Side& side) {
+        const float level = (side.layer.low + side.layer.high) / 2;
+        for (size_t i = 0; i < window_.count; ++i) {
+            const float away = std::abs(glm::dot(side.other, window_.offset(i)) - side.offset);
+            if (away < std::abs(heights_[i] - level)) heights_[i] = std::numeric_limits<float>::max();
+        }
     }
 
     const Patch* improve(SurfaceFit& fit, const SurfaceFit& other, const Patch& patch, const Patch& old) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "octree/normals/neighbours/neighbours.h"
@@ -42,6 +43,9 @@ struct SiteLine {
     glm::vec3 toward{0.0f};  ///< unit, in the plane: to the line, at right angles
     float distance = 0;
     Beyond beyond = Beyond::nothing;  ///< seen from the side to which `normal` points
+    /// Largest share of the site if the line is an outer edge: finite where several planes lie beyond it, of
+    /// which one line cannot follow the edges.
+    float most_area = std::numeric_limits<float>::infinity();
 };
 
 /// The estimated surface at each site of a chunk.
