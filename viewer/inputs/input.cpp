@@ -80,7 +80,7 @@ Result<Scans> open_scans(const InputOptions& options,
     if (!options.no_cache) {
         scans.cache = kept.find();
         if (scans.cache) return scans;
-        if (const auto place = kept.place()) {
+        if (const auto place = kept.place(kept.bytes_needed())) {
             scans.build.output = *place;
             scans.build.overwrite = true;  // an older cache of the same scans
             log::info("{}: {}; converting, the cache is kept as {}", options.paths[0], infos[0].format,
@@ -146,6 +146,7 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
     open.source = scans.cache;
     if (open.source) return open;
     open.folder = std::move(scans.folder);
+    if (!open.folder) open.cache = scans.build.output;
     octree::GrowingOptions growing;
     growing.build = std::move(scans.build);
     growing.build.memory = kMemoryBeside;

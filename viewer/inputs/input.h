@@ -39,6 +39,7 @@ struct OpenInput {
     std::shared_ptr<const octree::NodeSource> source;
     std::optional<TemporaryFolder> folder;        ///< of a cache that is not kept; removed after the build
     std::unique_ptr<octree::GrowingBuild> build;  ///< for scans without a cache; not started yet
+    std::filesystem::path cache;                  ///< the file that the build writes; empty: it is not kept
 };
 
 /// Opens octrees as they are, else the kept cache of the scans, else a sample of the scans together with

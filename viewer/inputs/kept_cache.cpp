@@ -1,6 +1,7 @@
 #include "viewer/inputs/kept_cache.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/core/options.h"
 #include "io/core/random.h"
 #include "io/files/file.h"
 #include "io/files/user_folder.h"
@@ -31,6 +33,16 @@ uint64_t hash_of(const KeptCache::Scans& scans) {
         hash = mix64(hash, 0x100);  // not a byte value: marks the end of a path
     }
     return hash;
+}
+
+/// Of the cache (6 to 27 bytes) and of the records that are sorted for it.
+constexpr uint64_t kBytesPerPoint = 40;
+
+/// Returns what is free on the disk of a folder; the largest number if that is not known.
+uint64_t free_bytes(const path& folder) {
+    std::error_code unknown;
+    const auto space = std::filesystem::space(folder.empty() ? path(".") : folder, unknown);
+    return unknown ? std::numeric_limits<uint64_t>::max() : space.available;
 }
 
 bool same_file_name(const std::string& a, const std::string& b) {
@@ -76,12 +88,26 @@ std::shared_ptr<const octree::NodeSource> KeptCache::find() const {
     return nullptr;
 }
 
-std::optional<path> KeptCache::place() const {
+uint64_t KeptCache::bytes_needed() const {
+    uint64_t points = 0;
+    // Headers of damaged files declare any number of points.
+    constexpr uint64_t kMost = std::numeric_limits<uint64_t>::max() / kBytesPerPoint;
+    for (const auto& scan : scans_)
+        points = std::min(points + std::min(scan.declared_points, kMost / 2), kMost);
+    return points * kBytesPerPoint;
+}
+
+std::optional<path> KeptCache::place(uint64_t bytes) const {
     for (const path& file : {beside_, in_folder_}) {
         if (file.empty()) continue;
         std::error_code ignored;
         if (file == in_folder_) std::filesystem::create_directories(file.parent_path(), ignored);
         if (!check_output(file, true)) continue;
+        if (const uint64_t free = free_bytes(file.parent_path()); free < bytes) {
+            log::warn("{}: its disk has {} left, and converting may take {}", file.string(), bytes_text(free),
+                      bytes_text(bytes));
+            continue;
+        }
         if (!std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) return file;
         const auto cache = octree::open_cache(file);
         if (cache && made_of(**cache, false)) return file;

@@ -27,8 +27,11 @@ class KeptCache {
     /// options; else null.
     std::shared_ptr<const octree::NodeSource> find() const;
     /// Returns the file to write: the first writable place that is free or contains an older cache of the
-    /// same scans. Makes the cache folder. Returns nothing if there is no such place.
-    std::optional<std::filesystem::path> place() const;
+    /// same scans, on a disk with room for `bytes`. Makes the cache folder. Returns nothing if there is no
+    /// such place.
+    std::optional<std::filesystem::path> place(uint64_t bytes) const;
+    /// Returns a rough upper limit of what a conversion writes, bytes: the cache and its scratch files.
+    uint64_t bytes_needed() const;
 
  private:
     bool made_of(const octree::NodeSource& cache, bool same_state) const;

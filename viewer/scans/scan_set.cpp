@@ -1,6 +1,7 @@
 #include "viewer/scans/scan_set.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -22,12 +23,20 @@ constexpr uint64_t kReadPoints = 4'000'000;      ///< shown of the scan that is 
 constexpr uint64_t kLeastSamplePoints = 20'000;  ///< for one scan
 /// Each scan keeps one or two files open, and a process may have 1024.
 constexpr size_t kMostScans = 400;
+constexpr std::chrono::seconds kBetweenLooks(1);  ///< for caches that other programs have finished
+constexpr auto kNoTime = std::filesystem::file_time_type::min();  ///< of a file that is not there
 
 /// State shared between the window and the thread that opens a scan.
 struct Watch {
     std::atomic<bool> cancelled{false};
     std::atomic<double> share{0};
 };
+
+std::filesystem::file_time_type time_of(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(file, error);
+    return error ? kNoTime : time;
+}
 
 bool is_folder(const std::string& path) {
     std::error_code ignored;
@@ -70,8 +79,9 @@ struct ScanSet::Item {
     std::shared_ptr<Watch> watch = std::make_shared<Watch>();
     log::Operation operation;  ///< collects the warnings of opening and conversion
     OpenInput input;
-    Source source;       ///< the newest source
-    bool going = false;  ///< the build has been started
+    Source source;                                         ///< the newest source
+    bool going = false;                                    ///< the build has been started
+    std::filesystem::file_time_type cache_time = kNoTime;  ///< of the cache's file when the scan was opened
 };
 
 /// The opened files of a row, or the paths to open instead.
@@ -238,16 +248,34 @@ void ScanSet::go_on(uint64_t id) {
         row->state = ScanState::sample;  // its conversion had not started
         return;
     }
+    open_again(*row, item);
+}
+
+/// Opens a row's files again. What is drawn of them stays meanwhile.
+void ScanSet::open_again(ScanRow& row, Item& item) {
     retire(item);  // before the new build is opened, since both use the same file name
     item.watch = std::make_shared<Watch>();
     item.operation = {};
     item.going = false;
-    row->state = ScanState::opening;
-    row->stage = "opening";
-    row->share = 0;
+    row.error.reset();
+    row.state = ScanState::opening;
+    row.stage = "opening";
+    row.share = 0;
     InputOptions how = how_;
-    how.paths = row->paths;
-    push_opening(id, std::move(how), true, kSamplePoints);
+    how.paths = row.paths;
+    push_opening(row.id, std::move(how), true, kSamplePoints);
+}
+
+/// A window that opens a scan while another one converts it stops, since both would write one cache.
+void ScanSet::take_caches_of_others() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - looked_ < kBetweenLooks) return;
+    looked_ = now;
+    for (ScanRow& row : rows_) {
+        if (row.state != ScanState::stopped) continue;
+        Item& item = items_[row.id];
+        if (!item.input.cache.empty() && time_of(item.input.cache) != item.cache_time) open_again(row, item);
+    }
 }
 
 void ScanSet::convert_next() {
@@ -310,6 +338,7 @@ void ScanSet::take_opened() {
         }
         item.input = std::move(one->input);
         item.source = item.input.source;
+        if (!item.input.cache.empty()) item.cache_time = time_of(item.input.cache);
         row->state = item.input.build ? ScanState::sample : ScanState::whole;
         describe(item, *row);
         stale_ = true;
@@ -402,6 +431,7 @@ bool ScanSet::update() {
     const Source before = source_;
     take_opened();
     take_builds();
+    take_caches_of_others();
     take_joined();
     join_visible();
     return source_ != before;

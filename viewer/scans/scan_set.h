@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -90,7 +91,8 @@ class ScanSet {
     /// Starts the next conversion unless one is running.
     void convert_next();
 
-    /// Applies finished background jobs; call once per frame. Returns true if source() has changed.
+    /// Applies finished background jobs; call once per frame. Opens a stopped scan again once another program
+    /// has finished its cache. Returns true if source() has changed.
     bool update();
 
     const std::vector<ScanRow>& rows() const { return rows_; }
@@ -115,6 +117,8 @@ class ScanSet {
     void push_opening(uint64_t id, InputOptions how, bool together, uint64_t sample_points);
     void take_opened();
     void take_builds();
+    void take_caches_of_others();
+    void open_again(ScanRow& row, Item& item);
     void take_joined();
     void join_visible();
     void retire(Item& item);
@@ -132,6 +136,7 @@ class ScanSet {
     std::optional<StartingView> start_;
     std::optional<Error> problem_;  ///< error of joining the visible scans
     bool stale_ = false, joining_ = false;
+    std::chrono::steady_clock::time_point looked_;  ///< for caches of others
     // The last members: they end before the members that their jobs use.
     JobQueue joiner_, opener_;
 };

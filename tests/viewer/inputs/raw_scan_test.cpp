@@ -204,11 +204,29 @@ TEST(KeptCache, TwoScansOfOneNameInTwoFoldersHaveTwoPlaces) {
     a.path = folder / "none/a.las";
     b.path = folder / "nor/a.las";
     setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
-    const auto place_a = KeptCache({a}).place(), place_b = KeptCache({b}).place();
+    const auto place_a = KeptCache({a}).place(0), place_b = KeptCache({b}).place(0);
     unsetenv("XDG_CACHE_HOME");
     ASSERT_TRUE(place_a && place_b);
     EXPECT_NE(*place_a, *place_b);
     EXPECT_EQ(place_a->parent_path(), folder.path() / "lucarne");
+}
+
+TEST(KeptCache, IsNotPutOnADiskWithoutRoomForIt) {
+    const test::TemporaryFolder folder;
+    io::ScanInfo scan;
+    scan.path = folder / "a.las";
+    EXPECT_EQ(KeptCache({scan}).bytes_needed(), 0u);
+    EXPECT_EQ(KeptCache({scan}).place(0), std::filesystem::path(folder / "a.las.luc"));
+    scan.declared_points = 1'000'000;
+    EXPECT_GT(KeptCache({scan}).bytes_needed(), 10'000'000u);
+    scan.declared_points = std::numeric_limits<uint64_t>::max();
+    const KeptCache endless({scan, scan, scan});
+    EXPECT_GT(endless.bytes_needed(), std::numeric_limits<uint64_t>::max() / 2);
+    setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(endless.place(endless.bytes_needed()));
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("its disk has"));
+    unsetenv("XDG_CACHE_HOME");
 }
 
 }  // namespace

@@ -321,6 +321,30 @@ TEST_F(OpenScans, AFolderIsTheScansInIt) {
     EXPECT_EQ(set_.rows()[2].state, ScanState::failed);
 }
 
+TEST_F(OpenScans, AScanThatAnotherWindowConvertsIsShownFromThatCacheOnceItIsFinished) {
+    const std::string scan = folder_ / "a.las";
+    ASSERT_EQ(test::lucarne("generate cornell --points 20k -o " + scan).code, 0);
+    set_.open({scan});
+    ASSERT_TRUE(eventually([&] { return set_.source() != nullptr; }));
+    set_.stop(set_.rows()[0].id);
+    ASSERT_TRUE(settles());
+    ASSERT_EQ(set_.rows()[0].state, ScanState::stopped);
+    ASSERT_FALSE(std::filesystem::exists(scan + ".luc"));
+
+    ScanSet other(
+        {}, [](const octree::NodeSource&) -> Result<StartingView> { return StartingView{}; }, [] {});
+    other.open({scan});
+    ASSERT_TRUE(test::eventually([&] {
+        other.update();
+        other.convert_next();
+        return other.settled();
+    }));
+    ASSERT_EQ(other.rows()[0].state, ScanState::whole);
+    ASSERT_TRUE(eventually([&] { return set_.rows()[0].state == ScanState::whole; }));
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(set_.source()->header().points, other.source()->header().points);
+}
+
 TEST_F(OpenScans, AConversionThatIsStoppedLeavesThePictureAndGoesOnLater) {
     const std::string scan = folder_ / "a.las";
     ASSERT_EQ(test::lucarne("generate nave --points 300k -o " + scan).code, 0);
