@@ -32,6 +32,13 @@ constexpr double kAhead = 0.5;       // s of the camera's motion that are loaded
 bool stopped(const FrameRequest& request) {
     return request.stop && *request.stop;
 }
+
+/// The engines that draw a frame.
+struct Drawing {
+    gi::Engine* engine = nullptr;    ///< the picture's, or the one that stands in for it
+    gi::Engine* compared = nullptr;  ///< the one that it is compared with, or null
+    bool operator==(const Drawing&) const = default;
+};
 }  // namespace
 
 struct Pipeline::State {
@@ -50,9 +57,9 @@ struct Pipeline::State {
     void look_ahead(const FrameRequest& request);
     Result<void> stream(const FrameRequest& request);
     Result<void> build_cuts(bool hold_light);
-    Result<gi::Engine*> drawing_engine(const FrameRequest& request);
-    Result<void> draw(gi::Engine& drawing, const FrameRequest& request);
-    Result<void> draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target);
+    Result<Drawing> drawing_engines(const FrameRequest& request);
+    Result<void> draw(const FrameRequest& request);
+    Result<void> draw_with(gi::Engine& by, const FrameRequest& request, gi::Buffer& target);
     Result<void> make_picture(const FrameRequest& request);
     FrameStats stats(double seconds) const;
 
@@ -77,6 +84,7 @@ struct Pipeline::State {
 
     std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
     std::unique_ptr<gi::Engine> stand_in;       ///< once it was needed (FrameRequest::stand_in)
+    Drawing drawing;                            ///< of the last frame
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
@@ -181,18 +189,20 @@ Result<void> Pipeline::State::build_cuts(bool hold_light) {
     return {};
 }
 
-/// Returns the engine that draws this frame.
-Result<gi::Engine*> Pipeline::State::drawing_engine(const FrameRequest& request) {
-    const bool early = request.stand_in_early && surfels.stats().pending > 0;
-    if (!(request.stand_in || early) || !engine->info().reports_progress) return engine.get();
+/// Returns the engines that draw this frame.
+Result<Drawing> Pipeline::State::drawing_engines(const FrameRequest& request) {
+    const bool quick = request.stand_in || (request.stand_in_early && surfels.stats().pending > 0);
+    const auto may_draw = [&](const gi::Engine& one) { return !quick || !one.info().reports_progress; };
+    gi::Engine* const compared = other && may_draw(*other) ? other.get() : nullptr;
+    if (may_draw(*engine)) return Drawing{engine.get(), compared};
     if (!stand_in) {
         LUCARNE_ASSIGN(stand_in, gi::make_engine(gi::default_engine().name));
     }
-    return stand_in.get();
+    return Drawing{stand_in.get(), compared};
 }
 
 /// Draws the G-buffer and lights it.
-Result<void> Pipeline::State::draw(gi::Engine& drawing, const FrameRequest& request) {
+Result<void> Pipeline::State::draw(const FrameRequest& request) {
     times.begin("G-buffer");
     const gi::PointSize size{
         static_cast<float>(scene.look.point_size), static_cast<float>(scene.look.point_pixels),
@@ -204,12 +214,12 @@ Result<void> Pipeline::State::draw(gi::Engine& drawing, const FrameRequest& requ
         LUCARNE_TRY(gi::blend(device, cuts.view(), camera, gbuffer, size));
         times.end();
     }
-    LUCARNE_TRY(draw_with(drawing, request, presentation.sample(false)));
-    return other ? draw_with(*other, request, presentation.sample(true)) : Result<void>();
+    LUCARNE_TRY(draw_with(*drawing.engine, request, presentation.sample(false)));
+    return drawing.compared ? draw_with(*drawing.compared, request, presentation.sample(true))
+                            : Result<void>();
 }
 
-Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest& request,
-                                        gi::Buffer& target) {
+Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& request, gi::Buffer& target) {
     const size_t pixels = size_t{request.size.width} * request.size.height;
     LUCARNE_TRY(device.reserve(target, pixels * sizeof(glm::vec4), "the picture's radiance"));
     std::vector<gi::Light> lights;
@@ -229,33 +239,34 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
                     .bounds = {local.to_local(header.min), local.to_local(header.max)},
                     .moving = request.moving,
                     .light_budget = request.light_budget,
-                    .bake = &drawing == engine.get() ? baked.bake.get() : nullptr,
+                    .bake = &by == engine.get() ? baked.bake.get() : nullptr,
                     .bake_offset = glm::vec3((bake.frame().origin - local.origin) * local.metres_per_unit),
                     .stop = request.stop,
                     .progress = request.progress,
                     .unlit = scene.look.unlit,
                     .gl = on_device,
                     .times = times};
-    return drawing.draw(frame);
+    return by.draw(frame);
 }
 
 Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("load");
     LUCARNE_TRY(stream(request));
     times.end();
-    LUCARNE_ASSIGN(gi::Engine* const drawing, drawing_engine(request));
-    LUCARNE_TRY(build_cuts(drawing->reads_light_cuts()));
+    LUCARNE_ASSIGN(const Drawing now, drawing_engines(request));
+    if (std::exchange(drawing, now) != now) presentation.restart();
+    LUCARNE_TRY(build_cuts(drawing.engine->reads_light_cuts()));
     LUCARNE_TRY(take_bake(request));
     const bool other_sizes = std::exchange(most_pixels, request.most_pixels) != request.most_pixels;
     const bool other_sides = std::exchange(front_only, request.front_only) != request.front_only;
     if (!request.accumulate || !presentation.averaged() || other_sizes || other_sides) presentation.restart();
     const bool shifted = request.accumulate && request.antialiased;
     gi::shift_rays(camera, shifted ? presentation.accumulated() : 0);
-    LUCARNE_TRY(draw(*drawing, request));
+    LUCARNE_TRY(draw(request));
     if (stopped(request)) return {};
     times.begin("tone map");
     presentation.follow_exposure(request.exposure_seconds);
-    LUCARNE_TRY(presentation.finish(*drawing, other.get(), scene, gbuffer,
+    LUCARNE_TRY(presentation.finish(*drawing.engine, drawing.compared, scene, gbuffer,
                                     {request.accumulate, request.transparent,
                                      static_cast<uint32_t>(kGapsPerPoint * request.most_pixels)}));
     times.end();
@@ -287,6 +298,8 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.memory.resident = resident_memory();
     result.accumulated = std::max(presentation.accumulated(), 1u);
     result.engine = engine->stats();
+    result.lit_by = drawing.engine->info().name;
+    if (drawing.compared) result.compared_with = drawing.compared->info().name;
     return result;
 }
 

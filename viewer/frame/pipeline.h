@@ -53,8 +53,10 @@ struct FrameRequest {
     /// (gi::Frame::light_budget).
     gi::StepBudget light_budget{};
     double exposure_seconds = 0;  ///< time in which automatic exposure follows by 63 %; 0: at once
-    bool stand_in = false;        ///< lets the default engine draw in the place of one that takes long
-    bool stand_in_early = false;  ///< likewise, as long as nodes are on their way
+    /// Lets the default engine draw in the place of one that takes long, and leaves a compared engine out
+    /// that does.
+    bool stand_in = false;
+    bool stand_in_early = false;              ///< likewise, as long as nodes are on their way
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
     Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
 };
@@ -79,6 +81,8 @@ struct FrameStats {
     uint64_t nodes_lost = 0;   ///< unreadable nodes, which are left out with their descendants
     std::string lost_node;     ///< why the first of these could not be read
     std::vector<std::pair<std::string, double>> engine;
+    std::string lit_by;         ///< the name of the engine that drew the picture
+    std::string compared_with;  ///< and of the one that it is compared with; empty: none has drawn
 
     double complete() const {  ///< share of the cuts that is drawn, 0..1
         return wanted_points ? static_cast<double>(ready_points) / static_cast<double>(wanted_points) : 1.0;

@@ -17,6 +17,11 @@ constexpr float kGrip = 6;  // half the width that the mouse grabs, to be scaled
 constexpr ImU32 kShare = IM_COL32(255, 226, 120, 255), kRing = IM_COL32(130, 130, 130, 255),
                 kGrasped = IM_COL32(255, 140, 40, 255);
 
+/// Returns an engine's label at the border. Says so while that side still shows another engine's light.
+std::string side_label(std::string_view wanted, std::string_view drawn) {
+    return gi::label_of(wanted) + (wanted == drawn ? "" : " (rendering)");
+}
+
 }  // namespace
 
 bool take_comparison_border(const Rendering& model) {
@@ -32,7 +37,9 @@ bool take_comparison_border(const Rendering& model) {
     list.AddLine({x, 0}, {x, io.DisplaySize.y}, hovered || model.holds_border ? kGrasped : IM_COL32_WHITE,
                  scaled(2));
     const float font = ImGui::GetFontSize(), y = io.DisplaySize.y - 3.5f * font;
-    const std::string left = gi::label_of(model.view.method.engine), right = gi::label_of(comparison->engine);
+    const FrameStats& shown = model.view.picture->stats;
+    const std::string left = side_label(model.view.method.engine, shown.lit_by);
+    const std::string right = side_label(comparison->engine, shown.compared_with);
     const ImVec2 size = ImGui::CalcTextSize(left.c_str());
     const float right_width = ImGui::CalcTextSize(right.c_str()).x;
     const float gap = scaled(8), edge = scaled(14), above = scaled(3);

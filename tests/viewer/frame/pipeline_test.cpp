@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gi/registry.h"
 #include "tests/viewer/frame/with_cornell.h"
 
 namespace lucarne::viewer {
@@ -67,6 +68,29 @@ TEST_F(PipelineTest, AComparedEngineGetsWhatItNeedsToo) {
     const FrameStats both = frame("unlit");
     EXPECT_GT(both.light_points, 0u);
     EXPECT_GT(both.light_view_points, 0u);
+}
+
+TEST_F(PipelineTest, SaysWhichEnginesDrewThePictureAndLeavesASlowComparedOneOutOfMotion) {
+    gi::Scene scene = pipeline_->scene();
+    scene.comparison.emplace().engine = "reference";
+    ASSERT_TRUE(pipeline_->set_scene(scene));
+    const auto passes = [](const FrameStats& stats) {
+        return std::ranges::count(stats.passes, "paths", &gi::PassTimes::Pass::name);
+    };
+    FrameStats stats = frame("unlit");
+    EXPECT_EQ(stats.lit_by, "unlit");
+    EXPECT_EQ(stats.compared_with, "reference");
+    EXPECT_GT(passes(stats), 0);
+    request_.moving = request_.stand_in = true;
+    stats = frame("unlit");
+    EXPECT_EQ(stats.lit_by, "unlit");
+    EXPECT_EQ(stats.compared_with, "");
+    EXPECT_EQ(passes(stats), 0);
+    request_.wait = false;  // else nothing is loaded for an engine that stands in
+    EXPECT_EQ(frame("reference").lit_by, gi::default_engine().name);
+    request_.wait = true;
+    request_.moving = request_.stand_in = false;
+    EXPECT_EQ(frame("unlit").compared_with, "reference");
 }
 
 TEST_F(PipelineTest, TheNodesOfTheEngineThatStandsInInMotionAreThereBeforeTheMotion) {
