@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.h"
+#include "tests/viewer/program.h"
 #include "viewer/commands/options/arguments.h"
 
 namespace lucarne::viewer {
@@ -76,6 +77,20 @@ TEST_F(CommandLineTest, NothingOrAnOptionInThePlaceOfACommandIsViewed) {
     EXPECT_EQ(ran_, "view");
     EXPECT_EQ(engine_, "vpl");
     EXPECT_EQ(inputs_, std::vector<std::string>{"a.las"});
+}
+
+TEST(CommandHelp, ListsEverydayOptionsFirstAndTheOthersUnderTitles) {
+    const test::Outcome ran = test::lucarne("render --help");
+    EXPECT_EQ(ran.code, 0);
+    size_t last = 0;
+    for (const char* part :
+         {"--output", "--mood", "--engine", "--size", "\nReading scans:", "--columns",
+          "\nEngines:", "--bounces", "\nPoints and colours:", "--clip-box",
+          "\nExposure, albedo and comparison:", "--exposure", "\nDetail and memory:", "--memory"}) {
+        const size_t at = ran.output.find(part, last);
+        ASSERT_NE(at, std::string::npos) << part << " is missing, or above what it should follow";
+        last = at;
+    }
 }
 
 TEST_F(CommandLineTest, TheVersionIsPrinted) {

@@ -193,6 +193,15 @@ void Arguments::run(std::function<Result<void>()> action) {
     *action_ = std::move(action);
 }
 
+ArgumentGroup::ArgumentGroup(Arguments& command, const std::string& title)
+    : app_(command.app_), before_(app_->option_defaults()->get_group()) {
+    app_->option_defaults()->group(title);
+}
+
+ArgumentGroup::~ArgumentGroup() {
+    app_->option_defaults()->group(before_);
+}
+
 CommandLine::CommandLine(const std::string& program, const std::string& description)
     : app_(std::make_unique<CLI::App>(description)) {
     app_->name(program);

@@ -83,12 +83,26 @@ class Arguments {
 
  private:
     friend class CommandLine;
+    friend class ArgumentGroup;
     Argument add_choice(const std::string& names, const std::vector<std::string>& words,
                         std::function<void(size_t)> set, const std::string& help);
 
     CLI::App* app_;
     std::shared_ptr<std::function<Result<void>()>> action_ =
         std::make_shared<std::function<Result<void>()>>();
+};
+
+/// While it lives, the help lists arguments that are added under a title of their own, below the others.
+class ArgumentGroup {
+ public:
+    ArgumentGroup(Arguments& command, const std::string& title);
+    ~ArgumentGroup();
+    ArgumentGroup(const ArgumentGroup&) = delete;
+    ArgumentGroup& operator=(const ArgumentGroup&) = delete;
+
+ private:
+    CLI::App* app_;
+    std::string before_;
 };
 
 /// The program's command line: a command and its arguments.

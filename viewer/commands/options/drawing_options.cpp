@@ -118,6 +118,27 @@ void warn_of_extent(const octree::SourceHeader& header) {
             widest);
 }
 
+void add_exposure(Arguments& command, DrawingOptions& options) {
+    command.add("--exposure", options.exposure, "Exposure in stops; by default the scene's, or automatic")
+        .range(-100.0, 100.0)
+        .type_name("EV");
+}
+
+void add_limits(Arguments& command, DrawingOptions& options) {
+    const ArgumentGroup group(command, "Detail and memory");
+    command.add("--points", options.points, "Largest number of points of a cut: 200000, 2M").type_name("N");
+    command
+        .add("--memory", options.memory,
+             "Cap on host memory for the octree's directory and nodes on their way to the device (512M)")
+        .type_name("SIZE");
+    command
+        .add("--device-memory", options.device_memory,
+             "Cap on device memory for surfels, pictures and maps together (2G)")
+        .type_name("SIZE");
+    command.flag("--no-prefetch", options.no_prefetch,
+                 "Do not load nodes ahead of a moving camera (for measurements)");
+}
+
 }  // namespace
 
 void add_drawing_options(Arguments& command, DrawingOptions& options) {
@@ -138,23 +159,20 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
         .show_default(std::string(kDefaultPreset))
         .type_name("NAME");
     command.add("--size", options.size, "Size of the picture in pixels").show_default().type_name("WxH");
-    add_engine_options(command, options.render.options);
-    command.add("--points", options.points, "Largest number of points of a cut: 200000, 2M").type_name("N");
-    command.add("--exposure", options.exposure, "Exposure in stops; by default the scene's, or automatic")
-        .range(-100.0, 100.0)
-        .type_name("EV");
-    command
-        .add("--memory", options.memory,
-             "Cap on host memory for the octree's directory and nodes on their way to the device (512M)")
-        .type_name("SIZE");
-    command
-        .add("--device-memory", options.device_memory,
-             "Cap on device memory for surfels, pictures and maps together (2G)")
-        .type_name("SIZE");
-    command.flag("--no-prefetch", options.no_prefetch,
-                 "Do not load nodes ahead of a moving camera (for measurements)");
-    add_look_options(command, options.look);
-    add_light_options(command, options.light);
+    {
+        const ArgumentGroup group(command, "Engines");
+        add_engine_options(command, options.render.options);
+    }
+    {
+        const ArgumentGroup group(command, "Points and colours");
+        add_look_options(command, options.look);
+    }
+    {
+        const ArgumentGroup group(command, "Exposure, albedo and comparison");
+        add_exposure(command, options);
+        add_light_options(command, options.light);
+    }
+    add_limits(command, options);
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names() + "\nMoods:" + mood_names());
 }
 

@@ -16,6 +16,7 @@ std::optional<std::string> problem_unless(bool good, const char* problem) {
 }  // namespace
 
 void add_read_options(Arguments& command, io::ReadOptions& options) {
+    const ArgumentGroup group(command, "Reading scans");
     command
         .add("--columns", options.columns,
              "Columns of a text file, such as x,y,z,-,intensity:f32,r,g,b (- skips a column); "
