@@ -34,7 +34,8 @@ void take_mood(const Lighting& model, Mood mood);
 /// sun outside would leave dark. Does nothing once the user has changed a light.
 void light_for_place(const Lighting& model);
 void draw_mood_bar(const Lighting& model);  ///< the moods as buttons over the picture, if there is room
-/// Draws lights' handles over the picture, and lets the mouse drag them. Returns true while one is dragged.
+/// Draws lights' handles over the picture while the section Light is open, and lets the mouse drag them.
+/// Returns true while one is dragged.
 bool take_light_handles(const Lighting& model);
 
 // Actions on the selected light. Positions are in world units.

@@ -90,7 +90,7 @@ void draw_beam(const Lighting& model, const gi::SceneLight& light) {
 bool take_light_handles(const Lighting& model) {
     if (!model.view.picture) return false;
     LightModel& tools = model.lights;
-    if (!tools.show_handles || !model.view.side_bar.shown ||
+    if (!tools.show_handles || !model.view.side_bar.shows(BarSection::light) ||
         gi::engine_is(model.view.method.engine, &gi::EngineInfo::unlit)) {
         tools.held.reset();
         return false;

@@ -10,6 +10,7 @@
 #include "viewer/publish/publishing.h"
 #include "viewer/rendering/rendering.h"
 #include "viewer/scans/scan_commands.h"
+#include "viewer/stations/stations.h"
 #include "viewer/style/styling.h"
 #include "viewer/ui/command_queue.h"
 #include "viewer/ui/file_question.h"
@@ -68,6 +69,7 @@ struct ViewModel {
     LightModel lights;
     MeasureModel measure;
     PublishModel publish;
+    StationModel stations;
     bool holds_border = false;  ///< the mouse drags a comparison's border
 
     ScanSet* scans = nullptr;  ///< the open scans; outlive the model
@@ -89,6 +91,7 @@ struct ViewModel {
     Rendering rendering() { return {view, holds_border}; }
     Measuring measuring() { return {view, measure}; }
     Publishing publishing() { return {view, publish}; }
+    Stations stationing() { return {view, stations}; }
 };
 
 }  // namespace lucarne::viewer

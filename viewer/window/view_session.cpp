@@ -248,6 +248,7 @@ void ViewSession::follow_scans() {
     if (scans_.update()) {
         model_.history.without_step(model_, [&] { take_extent(); });
         worker_.set_source(scans_.source());
+        follow_stations(model_.stationing(), scans_.source().get());
         if (!scans_.source()) model_.view.picture = nullptr;
         whole_pictures_ = 0;
     }
@@ -300,7 +301,7 @@ bool ViewSession::take_navigation() {
                                                      kInFront / model_.view.picture->metres_per_unit));
                 else if (twice)
                     model_.view.message =
-                        fmt::format("turning around {:.2f} {:.2f} {:.2f}", point->x, point->y, point->z);
+                        fmt::format("Pivot: {:.2f} {:.2f} {:.2f}", point->x, point->y, point->z);
             }
         input.inside = model_.view.inside();
         input.rotate = ImGui::IsMouseDown(ImGuiMouseButton_Left);
@@ -333,6 +334,7 @@ void ViewSession::take_input() {
     if (legend_.take(model_.styling()) || take_clip_handles(model_.styling()) ||
         take_comparison_border(model_.rendering()) || take_light_handles(model_.lighting()))
         return;
+    if (!model_.measure.tool && take_station_spots(model_.stationing())) return;
     measure_.take_input(model_.measuring());
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                                           ImGui::IsMouseDown(ImGuiMouseButton_Right));
@@ -446,7 +448,8 @@ void ViewSession::save_picture() {
     const Picture& picture = *model_.view.picture;
     const std::string path = free_name(model_.view.pictures, "lucarne", {".png"}).string() + ".png";
     const auto saved = io::write_png(path, without_alpha(picture.rgba, picture.size), false);
-    model_.view.message = saved ? fmt::format("saved {}{}", path, unfinished()) : saved.error().line();
+    model_.view.message =
+        saved ? fmt::format("saved {}{}", absolute_path(path), unfinished()) : saved.error().line();
     log::info(model_.view.message);
 }
 

@@ -10,6 +10,7 @@ std::vector<BoundAction> bound_actions(ViewModel& model) {
     bind(file_actions(), std::ref(model), all);
     bind(edit_actions(), std::ref(model), all);
     bind(view_actions(), std::ref(model), all);
+    bind(station_actions(), model.stationing(), all);
     bind(bookmark_actions(), model.bookmarking(), all);
     bind(look_actions(), model.styling(), all);
     bind(light_actions(), model.lighting(), all);
