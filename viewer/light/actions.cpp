@@ -126,14 +126,14 @@ void take_mood(const Lighting& model, Mood mood) {
 void place_light_at_camera(const Lighting& model) {
     gi::SceneLight* light = model.selected_light();
     if (!light) {
-        model.view.message = "the scene has no light to place";
+        model.view.message = "The scene has no light";
         return;
     }
     const gi::SceneCamera camera = model.view.rig.camera();
     light->position = camera.position;
     light->target = camera.target;
     model.view.scene_changed();
-    model.view.message = "the light is where the camera is";
+    model.view.message = "Light moved to the camera";
 }
 
 void aim_light(const Lighting& model, const glm::dvec3& target) {

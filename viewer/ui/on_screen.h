@@ -10,7 +10,7 @@
 
 namespace lucarne::viewer {
 
-inline constexpr float kTextPixels = 13;  ///< font height on a screen of scale 1, as it was designed
+inline constexpr float kTextPixels = 15;  ///< font height on a screen of scale 1, as it was designed
 
 /// Returns a world point's place in the window, or nothing if it is behind the camera.
 inline std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3& world) {

@@ -30,12 +30,12 @@ inline constexpr std::array<std::string_view, kSections> kSectionNames = {
 
 /// The side bar on the left of the window. It contains all panels as sections that open and close.
 struct SideBar {
-    static constexpr double kLeast = 20, kMost = 80;  ///< limits of the width, in heights of the text
+    static constexpr double kLeast = 17, kMost = 70;  ///< limits of the width, in heights of the text
 
     bool shown = true;
-    double width = 25;  ///< in heights of the text
-    std::array<bool, kSections> open = {true, true, true, true};
-    std::optional<BarSection> sought;  ///< the section to scroll to
+    double width = 21;                          ///< in heights of the text
+    std::array<bool, kSections> open = {true};  ///< at first the scans; moods and tools are over the picture
+    std::optional<BarSection> sought;           ///< the section to scroll to
 
     bool is_open(BarSection section) const { return open[static_cast<size_t>(section)]; }
     bool shows(BarSection section) const { return shown && is_open(section); }

@@ -16,6 +16,7 @@
 #include <imgui.h>
 
 #include "io/core/process.h"
+#include "viewer/ui/font.h"
 #include "viewer/window/drawn_frame.h"
 
 namespace lucarne::viewer {
@@ -260,9 +261,7 @@ void Window::fit_text() {
     io.FontGlobalScale = static_cast<float>(1 / pixels);
     io.MouseDoubleClickMaxDist = kDoubleClickReach * static_cast<float>(scale / pixels);
     io.Fonts->Clear();
-    ImFontConfig config;
-    config.SizePixels = std::round(kTextPixels * static_cast<float>(scale));
-    io.Fonts->AddFontDefault(&config);
+    add_interface_font(*io.Fonts, std::round(kTextPixels * static_cast<float>(scale)));
     ImGui_ImplOpenGL3_DestroyFontsTexture();  // the next frame makes another
     ImGui_ImplOpenGL3_CreateFontsTexture();
 }

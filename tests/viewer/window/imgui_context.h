@@ -3,6 +3,9 @@
 
 #include <imgui.h>
 
+#include "viewer/ui/font.h"
+#include "viewer/ui/on_screen.h"
+
 namespace lucarne::test {
 
 /// ImGui's context with a mouse and keys, which a test moves and presses.
@@ -14,6 +17,7 @@ class ImguiContext {
         io.IniFilename = nullptr;
         io.DisplaySize = size;
         io.DeltaTime = 1.0f / 60;
+        viewer::add_interface_font(*io.Fonts, viewer::kTextPixels);
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
         io.Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);

@@ -10,9 +10,9 @@ using namespace test;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// Returns the y of a header in a bar with all sections closed, for ImGui's sizes with a font of 13 pixels.
+/// Returns the y of a header in a bar with all sections closed, for ImGui's sizes with a font of 15 pixels.
 int header(int number) {
-    return 19 + 8 + 23 * number + 9;
+    return 21 + 8 + 25 * number + 10;
 }
 
 class SideBarWindow : public ViewerWindow {
@@ -29,7 +29,7 @@ class SideBarWindow : public ViewerWindow {
 TEST_F(SideBarWindow, SectionsOpenByKeysAndClicksItsEdgeIsDraggedAndTheNextWindowHasThemSo) {
     start();
     ASSERT_TRUE(picture(lit));
-    for (const char* key : {"shift+Tab", "F7", "y", "alt+l"}) xdo(std::string("key ") + key);
+    xdo("key shift+Tab");  // the only section that is open at first
     nlohmann::json kept = close();
     EXPECT_THAT(kept["open"], IsEmpty());
     const double width = kept["width"];

@@ -78,11 +78,11 @@ TEST_F(ViewerWindow, AnEndOfTheLegendIsDraggedToAnotherRangeAndADoubleClickTakes
     xdo("key Tab");  // the side bar would narrow the picture
     const auto first = picture(lit);
     ASSERT_TRUE(first);
-    // The legend bar's upper end is 10 text heights (of 13 pixels) from the right and 4 from the top.
-    drag(1, 350, 52, 350, 152);
+    // The legend bar's upper end is 10 text heights (of 15 pixels) from the right and 4 from the top.
+    drag(1, 330, 60, 330, 160);
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *first) > 2; }))
         << "the handle changes no colours";
-    xdo("mousemove 350 52 click --repeat 2 --delay 100 1");
+    xdo("mousemove 330 60 click --repeat 2 --delay 100 1");
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *first) < 0.5; }))
         << "a double-click does not take it back";
 }

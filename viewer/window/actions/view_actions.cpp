@@ -72,10 +72,10 @@ void navigate(ViewModel& model) {
             model.view.message = "Turntable: drag to rotate around the pivot (double-click)";
             break;
         case NavigationMode::fly:
-            model.view.message = "flying: W A S D, E and Q for up and down";
+            model.view.message = "Fly: W A S D, E and Q for up and down";
             break;
         case NavigationMode::walk:
-            model.view.message = "walking: W A S D, at eye height above the floor";
+            model.view.message = "Walk: W A S D, at eye height above the floor";
             break;
     }
 }

@@ -43,10 +43,12 @@ void draw_start_page(ViewModel& model) {
         recent_files(model);
         ImGui::Spacing();
         ImGui::Separator();
-        ImGui::BulletText("Left drag turns around what is under the cursor, right drag shifts,");
-        ImGui::BulletText("scrolling goes there; double-click chooses the point to turn around.");
-        ImGui::BulletText("L puts the light where you stand; Shift and drag aims it.");
-        ImGui::BulletText("F1 lists every key; each also stands in its menu.");
+        ImGui::BulletText(
+            "Left drag rotates, right drag shifts, scrolling goes to what is under the cursor.");
+        ImGui::BulletText(
+            "End goes inside a building. There left drag looks round, double-click goes there.");
+        ImGui::BulletText("The buttons over the picture choose the light: daylight, evening, museum...");
+        ImGui::BulletText("F1 lists all keys; each is also in its menu.");
     }
     ImGui::End();
 }
