@@ -22,7 +22,17 @@ class GoldenWindow : public ViewerWindow {
         std::filesystem::create_directory(folder_ / "config");
         std::ofstream(folder_ / "config/settings.json") << R"({"side_bar": {"open": [)" << list << "]}}";
     }
+    /// Makes a cache of a virtual scan, with the stations of its scanner.
+    std::string scan_of(const std::string& scene) const {
+        const std::string scan = folder_ / (scene + ".las"), cache = folder_ / (scene + ".luc");
+        const Outcome made = lucarne("generate " + scene + " --points 120k -o " + scan);
+        EXPECT_EQ(made.code, 0) << made.output;
+        const Outcome converted = lucarne("convert " + scan + " -o " + cache);
+        EXPECT_EQ(converted.code, 0) << converted.output;
+        return cache;
+    }
     void expect_as_kept(const std::string& name, const std::string& arguments) const {
+        xdo("mousemove 990 740");  // spots and handles under the mouse look different
         const std::string shot = folder_ / (name + ".png");
         const Outcome ran = shell("env -C " + folder_.path().string() + " " + display_ +
                                   "LUCARNE_CONFIG=" + (folder_ / "config") +
@@ -51,6 +61,7 @@ TEST_F(GoldenWindow, ExplainsItselfWithNothingOpen) {
 }
 
 TEST_F(GoldenWindow, ShowsALitScanBesideItsSideBar) {
+    open_sections(R"("scans", "light")");
     expect_as_kept("lit", "cornell.luc --scene " LUCARNE_SOURCE_DIR "/data/scenes/cornell.json --engine vpl");
 }
 
@@ -80,6 +91,14 @@ TEST_F(GoldenWindow, ShowsAFlythroughsPathAndItsKeyFrames) {
         {"time": 5, "position": [5, 1, 2], "target": [2.75, 5, 2.75], "fov": 40}]})";
     expect_as_kept("flythrough", "cornell.luc --scene " LUCARNE_SOURCE_DIR
                                  "/data/scenes/cornell.json --engine direct --path flythrough.json");
+}
+
+TEST_F(GoldenWindow, ShowsARoomFromInsideAndTheSpotsOfItsStations) {
+    expect_as_kept("room", scan_of("nave"));
+}
+
+TEST_F(GoldenWindow, ShowsAHouseInDaylightAsItIsFirstSeen) {
+    expect_as_kept("house", scan_of("house") + " --mood daylight --engine direct");
 }
 
 /// A golden picture, changed as defects would change it.

@@ -2,7 +2,9 @@
 #include <fstream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "tests/viewer/window/places.h"
 #include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
@@ -142,6 +144,88 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
         return difference(now, *above) < 3;
     })) << "the bookmark leads back";
     close_window();
+}
+
+/// A newcomer who has only a mouse, and a raw scan of a room.
+class NewcomerWithAMouse : public ManagedWindow {
+ protected:
+    void SetUp() override {
+        width_ = 940;  // the moods' buttons need room beside the side bar
+        height_ = 600;
+        engine_.clear();  // nothing says what to show
+        ManagedWindow::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        room_ = folder_ / "room.las";
+        const Outcome made = lucarne("generate nave --points 60k -o " + room_);
+        ASSERT_EQ(made.code, 0) << made.output;
+    }
+    /// Starts with the scan as the only argument, and waits for the window's first complete picture.
+    std::optional<io::Image8> open() {
+        start_with(room_);
+        window_ = xdo("search --name 'Lucarne - '").output;
+        window_ = window_.substr(0, window_.find('\n'));
+        return picture(lit);
+    }
+    void click(const ImVec2& place) const {
+        xdo(fmt::format("mousemove --window {} {} {} sleep 0.4 click 1 sleep 0.4", window_, place.x,
+                        place.y));
+    }
+    void choose(std::string_view action) {
+        const auto places = places_.action(action);
+        ASSERT_TRUE(places) << action;
+        for (const ImVec2& place : *places) click(place);
+    }
+    void quit() {
+        choose("Quit");
+        ASSERT_TRUE(eventually([&] { return !viewer_->running(); })) << log();
+        EXPECT_EQ(viewer_->code(), 0);
+    }
+    /// The files of the work that was kept by itself.
+    std::vector<std::filesystem::path> projects() const {
+        std::vector<std::filesystem::path> found;
+        std::error_code none;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / "config/projects", none))
+            if (entry.path().extension() == ".json") found.push_back(entry.path());
+        return found;
+    }
+
+    Places places_{{940, 600}};
+    std::string room_, window_;
+};
+
+TEST_F(NewcomerWithAMouse, SeesARoomInEveningLightMeasuresItSavesAPictureAndFindsItAllAgainInSixSteps) {
+    const auto colours = open();  // step 1
+    ASSERT_TRUE(colours) << log();
+
+    const auto evening = places_.mood(viewer::Mood::evening);
+    ASSERT_TRUE(evening);
+    click(*evening);  // step 2
+    const auto lamps = picture([&](const io::Image8& now) { return difference(now, *colours) > 5; });
+    ASSERT_TRUE(lamps) << log();
+
+    choose("Distance");  // step 3
+    click({450, 420});
+    click({760, 470});
+    choose("Save the picture as PNG");  // step 4
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "lucarne-0002.png"); })) << log();
+    const auto saved = io::read_png(folder_ / "lucarne-0002.png");
+    ASSERT_TRUE(saved);
+    EXPECT_TRUE(nearer(*saved, *lamps, *colours));
+
+    quit();  // step 5
+    EXPECT_THAT(log(), testing::Not(HasSubstr("asked whether to close"))) << "nothing would be lost";
+    ASSERT_EQ(projects().size(), 1u) << log();
+    const nlohmann::json kept = nlohmann::json::parse(bytes_of(projects().front()));
+    EXPECT_EQ(kept.at("mood"), "evening");
+    ASSERT_EQ(kept.at("measurements").at("measurements").size(), 1u) << kept.dump(1);
+
+    const auto again = open();  // step 6
+    ASSERT_TRUE(again) << log();
+    EXPECT_THAT(log(), HasSubstr("your work on this scan is shown again"));
+    EXPECT_TRUE(nearer(*again, *lamps, *colours)) << "light and view are those of the day before";
+    quit();
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(projects().front())).at("measurements"),
+              kept.at("measurements"));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace lucarne::test {
 
-inline constexpr int kWidth = 480, kHeight = 360;  ///< of the window
+inline constexpr int kWidth = 480, kHeight = 360;  ///< of the window, unless a test has another
 
 class ViewerWindow : public testing::Test {
  protected:
@@ -31,7 +31,7 @@ class ViewerWindow : public testing::Test {
     /// Starts `lucarne view` with `arguments` and environment `variables`.
     void start_with(const std::string& arguments, const std::string& variables = "") {
         viewer_.emplace(screen_->environment() + variables + " " LUCARNE_BINARY " view " + arguments +
-                        engine_ + " --size " + std::to_string(kWidth) + "x" + std::to_string(kHeight) +
+                        engine_ + " --size " + std::to_string(width_) + "x" + std::to_string(height_) +
                         " 2>>" + (folder_ / "log"));
         ASSERT_TRUE(
             eventually([&] { return !viewer_->running() || xdo("search --name 'Lucarne - '").code == 0; }));
@@ -67,8 +67,8 @@ class ViewerWindow : public testing::Test {
                 std::this_thread::sleep_for(std::chrono::milliseconds(50));
             if (times_saved() == before || !whole()) return false;
             const auto saved = io::read_png(file);
-            if (!saved || saved->width != kWidth * scale_ * resolution_ ||
-                saved->height != kHeight * scale_ * resolution_ || !wanted(*saved))
+            if (!saved || saved->width != width_ * scale_ * resolution_ ||
+                saved->height != height_ * scale_ * resolution_ || !wanted(*saved))
                 return false;
             result = *saved;
             return true;
@@ -99,6 +99,7 @@ class ViewerWindow : public testing::Test {
     std::optional<VirtualScreen> screen_;
     std::optional<Background> viewer_;
     std::string display_, cache_;
+    int width_ = kWidth, height_ = kHeight;
     uint32_t scale_ = 1;     ///< screen pixels along a side of a desktop's unit
     double resolution_ = 1;  ///< share of the window's width and height at which pictures are made (--scale)
 };
