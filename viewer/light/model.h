@@ -29,8 +29,7 @@ struct LightModel {
     std::optional<Mood> mood;  ///< the mood that the lights are of; none once one of them was changed
     size_t selected = 0;       ///< index of the selected light
     bool show_handles = true;
-    bool lumens = false;   ///< show strengths in lm and lx
-    double kelvin = 6500;  ///< the panel's colour temperature
+    bool lumens = false;  ///< show strengths in lm and lx
     std::optional<LightHandle> held;
     std::string sky_image;  ///< path of the sky picture, as typed
     CommandQueue<LoadSky> commands;

@@ -42,7 +42,7 @@ void dye(gi::SceneLight& light, const glm::dvec3& colour) {
 }
 
 /// Edits the light's colour as the screen shows it, or as linear values.
-bool edit_colour(const Lighting& model, gi::SceneLight& light) {
+bool edit_colour(gi::SceneLight& light) {
     const double most = std::max({light.strength.x, light.strength.y, light.strength.z});
     float shown[3];
     for (int i = 0; i < 3; ++i)
@@ -60,10 +60,9 @@ bool edit_colour(const Lighting& model, gi::SceneLight& light) {
         dye(light, {linear[0], linear[1], linear[2]});
         changed = true;
     }
-    float kelvin = static_cast<float>(model.lights.kelvin);
+    float kelvin = static_cast<float>(gi::black_body_temperature(light.strength));
     if (ImGui::SliderFloat("Temperature", &kelvin, gi::kCoolest, 12000, "%.0f K",
                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
-        model.lights.kelvin = kelvin;
         dye(light, gi::black_body_colour(kelvin));
         changed = true;
     }
@@ -91,7 +90,7 @@ bool edit_strength(const Lighting& model, gi::SceneLight& light) {
         ImGui::SetTooltip(
             "179 lm a watt of white light in the visible band (Ward & Shakespeare 1998),\n"
             "colours weighted by Rec. 709's luminance");
-    changed |= edit_colour(model, light);
+    changed |= edit_colour(light);
     if (changed) light.daylight = false;
     return changed;
 }
@@ -176,7 +175,7 @@ void draw_light_panel(const Lighting& model) {
     if (gi::SceneLight* light = model.selected_light()) {
         ImGui::Separator();
         if (edit_light(model, *light)) model.view.scene_changed();
-        if (light->kind != gi::LightKind::directional && ImGui::Button("Put it where the camera is"))
+        if (light->kind != gi::LightKind::directional && ImGui::Button("Move to the camera"))
             place_light_at_camera(model);
     }
     draw_sky(model);

@@ -8,11 +8,13 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "gi/registry.h"
 #include "io/core/guarded.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "io/files/free_name.h"
 #include "viewer/frame/rgba.h"
+#include "viewer/light/darkness.h"
 #include "viewer/opening/first_view.h"
 #include "viewer/ui/on_screen.h"
 #include "viewer/ui/popups.h"
@@ -98,6 +100,16 @@ void ViewSession::take_picture() {
     const bool whole =
         latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source;
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
+    if (whole) help_in_the_dark(*latest);
+}
+
+/// Says what to do where no light reaches the view, as in a closed room in daylight.
+void ViewSession::help_in_the_dark(const Picture& picture) {
+    if (std::exchange(looked_for_dark_, picture.request) == picture.request) return;
+    const bool dark = !gi::engine_is(picture.stats.lit_by, &gi::EngineInfo::unlit) && is_dark(picture);
+    if (dark && !std::exchange(is_dark_, dark))
+        model_.view.message = "No light gets here: choose Evening or Scan colours";
+    is_dark_ = dark;
 }
 
 /// Makes lost contexts and their contents again.

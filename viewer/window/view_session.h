@@ -77,6 +77,7 @@ class ViewSession {
 
     Result<void> show_until_closed();
     void take_picture();
+    void help_in_the_dark(const Picture& picture);
     Result<void> recover();
     void follow_device();
     void follow_scans();
@@ -131,9 +132,11 @@ class ViewSession {
     uint64_t own_scene_ = 1;  ///< the scene version before any change by the user
     std::string own_engine_;  ///< with which the window has opened
     uint64_t scene_seen_ = 0;
-    uint32_t whole_pictures_ = 0;  ///< complete pictures in the displayed average
-    uint32_t idle_frames_ = 0;     ///< frames of the window with nothing open
-    std::string message_;          ///< the message that is shown
+    uint32_t whole_pictures_ = 0;   ///< complete pictures in the displayed average
+    uint64_t looked_for_dark_ = 0;  ///< the last request whose picture was looked at
+    bool is_dark_ = false;          ///< and whether that was dark
+    uint32_t idle_frames_ = 0;      ///< frames of the window with nothing open
+    std::string message_;           ///< the message that is shown
     Clock::time_point message_since_;
     Clock::time_point last_moving_;  ///< when the last picture of a motion arrived, or the motion began
     Clock::time_point moved_ = Clock::now() - std::chrono::hours(1);
