@@ -82,6 +82,14 @@ TEST(Settings, RecentFilesAreBounded) {
     EXPECT_EQ(settings.recent.front(), "/99");
 }
 
+TEST(Settings, AWiderSideBarOfEarlierVersionsIsNarrowed) {
+    const TemporaryFolder folder;
+    write(folder / "settings.json", R"({"side_bar": {"width": 80}})");
+    const LoadedSettings loaded = load_settings(folder.path());
+    EXPECT_EQ(loaded.problem, "");
+    EXPECT_EQ(loaded.settings.side_bar.width, SideBar::kMost);
+}
+
 TEST(Settings, SectionsOfOtherVersionsAreLeftOut) {
     const TemporaryFolder folder;
     write(folder / "settings.json", R"({"side_bar": {"open": ["light", "of tomorrow"]}})");

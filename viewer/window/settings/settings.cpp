@@ -13,6 +13,9 @@
 namespace lucarne::viewer {
 namespace {
 
+/// The widest side bar of earlier versions, whose text was smaller, in heights of the text.
+constexpr double kWidestKept = 80;
+
 namespace fs = std::filesystem;
 
 constexpr const char* kFile = "settings.json";
@@ -52,7 +55,8 @@ nlohmann::json mapping_json(const io::SixDofMapping& mapping) {
 Result<SideBar> read_side_bar(JsonObject& object, const nlohmann::json& json) {
     SideBar bar;
     LUCARNE_ASSIGN(bar.shown, object.boolean("shown", bar.shown));
-    LUCARNE_ASSIGN(bar.width, object.number("width", {SideBar::kLeast, SideBar::kMost}, bar.width));
+    LUCARNE_ASSIGN(bar.width, object.number("width", {SideBar::kLeast, kWidestKept}, bar.width));
+    bar.width = std::min(bar.width, SideBar::kMost);
     const auto open = json.find("open");
     if (open == json.end()) return bar;
     if (!open->is_array()) return object.wrong("is no list", "open");
