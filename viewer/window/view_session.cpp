@@ -407,7 +407,8 @@ void ViewSession::send_request() {
     // Averages of a sketch would take the processors from the conversion that replaces it.
     request.frame.accumulate = !request.moving && !std::ranges::any_of(scans_.rows(), grows);
     if (shot_) request.pictures = shot_->pictures;
-    request.frame.moving = request.frame.stand_in = request.moving;
+    request.frame.moving = request.moving;
+    request.frame.stand_in = request.moving || !model_.view.picture;  // something is seen at once
     request.frame.stand_in_early = true;
     if (request.moving) {
         const ImageSize size = quality_.size(request.frame.size);
