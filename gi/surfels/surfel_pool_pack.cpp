@@ -13,6 +13,7 @@
 #include "gi/surfels/surfel_edge.h"
 #include "gi/surfels/surfel_pool.h"
 #include "octree/tree/attributes.h"
+#include "octree/tree/edge_line.h"
 #include "octree/tree/point_normals.h"
 
 namespace lucarne::gi {
