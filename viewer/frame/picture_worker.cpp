@@ -118,6 +118,13 @@ bool worth_another(const PictureRequest& request, const FrameStats& stats) {
 
 }  // namespace
 
+glm::dvec3 Picture::seen_at(const glm::ivec2& pixel) const {
+    const auto wide = [](const glm::vec3& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
+    const float along = depth[static_cast<size_t>(pixel.y) * size.width + static_cast<size_t>(pixel.x)];
+    const glm::dvec3 offset = wide(gi::view_offset(camera, glm::vec2(pixel) + 0.5f, along));
+    return local_origin + (wide(camera.origin) + offset) / metres_per_unit;
+}
+
 std::optional<glm::dvec3> Picture::pick(const glm::dvec2& place) const {
     const int width = static_cast<int>(size.width), height = static_cast<int>(size.height);
     const int x = static_cast<int>(place.x * width), y = static_cast<int>(place.y * height);
@@ -133,10 +140,7 @@ std::optional<glm::dvec3> Picture::pick(const glm::dvec2& place) const {
             best = at;
         }
     if (!best) return std::nullopt;
-    const auto wide = [](const glm::vec3& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
-    const float along = depth[static_cast<size_t>(best->y) * size.width + best->x];
-    const glm::dvec3 offset = wide(gi::view_offset(camera, glm::vec2(*best) + 0.5f, along));
-    return local_origin + (wide(camera.origin) + offset) / metres_per_unit;
+    return seen_at(*best);
 }
 
 void PictureWorker::State::publish(Result<std::shared_ptr<Picture>> made, uint64_t request) {

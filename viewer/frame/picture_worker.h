@@ -53,6 +53,8 @@ struct Picture {
     uint64_t device_memory = 0;  ///< bytes of the device's buffers
     std::string shader_problem;  ///< gi::Device::shader_problem()
 
+    /// Returns the world point that a pixel shows. The pixel must show one.
+    glm::dvec3 seen_at(const glm::ivec2& pixel) const;
     /// Returns the visible world point at a place (shares of the width and height from the top left). If
     /// nothing is visible there, returns the nearest one within a few pixels.
     std::optional<glm::dvec3> pick(const glm::dvec2& place) const;

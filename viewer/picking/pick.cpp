@@ -13,7 +13,8 @@ constexpr size_t kMostCandidates = 12;  ///< surfels whose points are read
 
 struct Candidate {
     uint32_t id = 0;
-    int distance2 = 0;  ///< pixels^2 from the place to the surfel's nearest pixel
+    int distance2 = 0;    ///< pixels^2 from the place to the surfel's nearest pixel
+    glm::ivec2 pixel{0};  ///< that pixel
 };
 
 glm::dvec3 wide(const glm::vec4& v) {
@@ -29,7 +30,7 @@ std::vector<Candidate> candidates(const Picture& picture, const glm::ivec2& at) 
             const uint32_t id =
                 picture.ids[static_cast<size_t>(y) * picture.size.width + static_cast<size_t>(x)];
             const int distance2 = (x - at.x) * (x - at.x) + (y - at.y) * (y - at.y);
-            if (id != gi::kNoSurfel && distance2 <= kReach * kReach) found.push_back({id, distance2});
+            if (id != gi::kNoSurfel && distance2 <= kReach * kReach) found.push_back({id, distance2, {x, y}});
         }
     std::ranges::sort(found, {}, [](const Candidate& c) { return std::pair(c.id, c.distance2); });
     // Not std::ranges::unique: clang 14, which builds the fuzzers, cannot compile its result.
@@ -81,8 +82,8 @@ Result<std::optional<PickedPoint>> pick_point(const Picture& picture, const glm:
                                               NodeCache& cache) {
     if (!(place.x >= 0 && place.x < 1 && place.y >= 0 && place.y < 1) || !picture.points) return std::nullopt;
     const glm::dvec2 at(place.x * picture.size.width, place.y * picture.size.height);
-    std::optional<PickedPoint> best;
-    double nearest = INFINITY;
+    std::optional<PickedPoint> best, covered;
+    double nearest = INFINITY, nearest_covered = INFINITY;
     for (const Candidate& candidate : candidates(picture, glm::ivec2(at))) {
         const auto found = picture.points->find(candidate.id);
         if (!found) continue;
@@ -92,14 +93,25 @@ Result<std::optional<PickedPoint>> pick_point(const Picture& picture, const glm:
         ExactPoint point =
             exact_point(*picture.source, found->node, data->records.data() + found->index * stride);
         const auto projected = project(picture, point.position);
-        if (!projected || !shows(picture, candidate.id, *projected)) continue;
+        if (!projected) continue;
+        if (!shows(picture, candidate.id, *projected)) {
+            const glm::dvec3 seen = picture.seen_at(candidate.pixel);
+            const double distance = glm::distance(seen, point.position);
+            // What covers it may lie before it by no more than the seen place is away from it.
+            const double slack = distance * picture.metres_per_unit / projected->depth;
+            if (distance < nearest_covered && !hidden(picture, *projected, slack)) {
+                nearest_covered = distance;
+                covered = PickedPoint{*found, std::move(point)};
+            }
+            continue;
+        }
         const double distance = candidate.distance2 == 0 ? -1 : glm::distance(projected->pixel, at);
         if (distance >= nearest) continue;
         nearest = distance;
         best = PickedPoint{*found, std::move(point)};
         if (nearest < 0) break;  // the pixel at the place itself shows it
     }
-    return best;
+    return best ? best : covered;
 }
 
 }  // namespace lucarne::viewer

@@ -31,8 +31,10 @@ struct PickedPoint {
 };
 
 /// Returns the point of the scan at a place of the picture (shares of its width and height from the top
-/// left): the point whose surfel the pixel shows, or the nearest visible one within a few pixels. Takes only
-/// points that are visible at their own pixel. Points behind a surface, outside the cut or clipped are never
+/// left): the point whose surfel the pixel shows, or the nearest visible one within a few pixels. A point is
+/// visible if its surfel is seen at the point's own pixel. Where there is no such point (discs of few points
+/// cover each other's centres), returns the point of a seen disc whose centre only the same surface covers:
+/// the one nearest to the seen place. Points behind another surface, outside the cut or clipped are never
 /// taken, because the picture contains no ids of them. Reads nodes, so it may block. `cache` must belong to
 /// the picture's source. Returns nothing if nothing is visible there. Errors: a node cannot be read.
 Result<std::optional<PickedPoint>> pick_point(const Picture& picture, const glm::dvec2& place,

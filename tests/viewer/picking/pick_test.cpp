@@ -1,5 +1,6 @@
 #include "viewer/picking/pick.h"
 
+#include <random>
 #include <semaphore>
 
 #include <glm/geometric.hpp>
@@ -31,17 +32,22 @@ class Pick : public testing::Test {
     /// Returns the complete picture seen from a place relative to the front wall's corner.
     std::shared_ptr<const Picture> look(const glm::dvec3& from, const glm::dvec3& to,
                                         const gi::Look& how = {}) {
+        return look_at(scan_->source, MeasuredScan::kCorner + from, MeasuredScan::kCorner + to, how);
+    }
+    static std::shared_ptr<const Picture> look_at(const std::shared_ptr<const octree::NodeSource>& source,
+                                                  const glm::dvec3& from, const glm::dvec3& to,
+                                                  const gi::Look& how = {}) {
         std::counting_semaphore<> published(0);
-        const auto worker = PictureWorker::start({[] { return gi::Device::headless(); }, [] {}},
-                                                 scan_->source, {}, [&] { published.release(); });
+        const auto worker = PictureWorker::start({[] { return gi::Device::headless(); }, [] {}}, source, {},
+                                                 [&] { published.release(); });
         if (!worker) return nullptr;
         PictureRequest request;
         request.method.engine = "direct";
-        const auto& header = scan_->source->header();
+        const auto& header = source->header();
         request.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
         request.scene.look = how;
-        request.frame.camera.position = MeasuredScan::kCorner + from;
-        request.frame.camera.target = MeasuredScan::kCorner + to;
+        request.frame.camera.position = from;
+        request.frame.camera.target = to;
         request.frame.size = {400, 300};
         (*worker)->request(request);
         for (;;) {
@@ -114,6 +120,56 @@ TEST_F(Pick, NeverTakesAPointThatAWallHides) {
         }
     EXPECT_GT(front, 500);
     EXPECT_GT(behind, 200);
+}
+
+/// A wall (x 0 to 4, z 0 to 3, y = 0) as a rough scan has it: few points, half a spacing of noise across it.
+std::shared_ptr<const octree::NodeSource> rough_wall(const std::filesystem::path& file) {
+    io::Schema schema;
+    schema.position = io::PositionType::f64;
+    schema.stride = 24;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> along(0, 4), up(0, 3);
+    std::normal_distribution<double> across(0, 0.05);
+    std::vector<glm::dvec3> points(1200);
+    for (glm::dvec3& point : points) {
+        point.x = along(random);
+        point.y = across(random);
+        point.z = up(random);
+    }
+    const test::ComputedSource scan(schema, points.size(),
+                                    [&](uint64_t i, std::byte* record) { io::store(record, points[i]); });
+    octree::BuildOptions options;
+    options.inputs = {&scan};
+    options.output = file;
+    const auto built = octree::build_cache(options);
+    EXPECT_TRUE(built) << built.error().line();
+    auto opened = octree::open_cache(file);
+    return opened ? std::move(*opened) : nullptr;
+}
+
+// Few points have large discs that are tilted and cover each other's centres.
+TEST_F(Pick, TakesAPointOfARoughSurfaceNearlyWhereverItIsSeen) {
+    const test::TempFolder folder;
+    const auto wall = rough_wall(folder / "rough.luc");
+    ASSERT_TRUE(wall);
+    const auto picture = look_at(wall, {-1, -1, 1.5}, {2, 0, 1.5});
+    ASSERT_TRUE(picture);
+    NodeCache cache(wall);
+    int seen = 0, without = 0;
+    for (int y = 0; y < 300; y += 4)
+        for (int x = 0; x < 400; x += 4) {
+            if (!(picture->depth[static_cast<size_t>(y) * 400 + static_cast<size_t>(x)] > 0)) continue;
+            ++seen;
+            const auto picked = pick_point(*picture, {(x + 0.5) / 400, (y + 0.5) / 300}, cache);
+            ASSERT_TRUE(picked);
+            if (!*picked)
+                ++without;
+            else
+                EXPECT_LT(glm::distance((*picked)->point.position, picture->seen_at({x, y})), 1)
+                    << "no disc is larger";
+        }
+    EXPECT_GT(seen, 1000);
+    EXPECT_LE(without, seen / 200);
 }
 
 TEST_F(Pick, NeverTakesAPointThatIsClippedOrOfAHiddenClass) {

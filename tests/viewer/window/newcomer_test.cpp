@@ -78,12 +78,12 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     ASSERT_TRUE(seen) << "light";
 
     xdo("key ctrl+2");
-    xdo(at(200, 200) + "click 1 sleep 0.4 " + at(280, 220) + "click 1 sleep 0.4");
+    xdo(at(120, 200) + "click 1 sleep 0.4 " + at(280, 220) + "click 1 sleep 0.4");
     const std::string csv = folder_ / "measurements.csv";
     ASSERT_TRUE(eventually([&] {
         xdo("key ctrl+e sleep 0.3");
         return std::filesystem::exists(csv);
-    })) << "measure";
+    })) << "measure\n" << log();
     const size_t length = bytes_of(csv).find("Distance 1,distance,length,");
     ASSERT_NE(length, std::string::npos) << bytes_of(csv);
     EXPECT_GT(std::stod(bytes_of(csv).substr(length + 27)), 0.1) << "metres in a box of 5.5";
