@@ -34,10 +34,10 @@ bool stopped(const FrameRequest& request) {
 }
 
 /// The engines that draw a frame.
-struct Drawing {
+struct DrawingEngines {
     gi::Engine* engine = nullptr;    ///< the picture's, or the one that stands in for it
     gi::Engine* compared = nullptr;  ///< the one that it is compared with, or null
-    bool operator==(const Drawing&) const = default;
+    bool operator==(const DrawingEngines&) const = default;
 };
 }  // namespace
 
@@ -57,7 +57,7 @@ struct Pipeline::State {
     void look_ahead(const FrameRequest& request);
     Result<void> stream(const FrameRequest& request);
     Result<void> build_cuts(bool hold_light);
-    Result<Drawing> drawing_engines(const FrameRequest& request);
+    Result<DrawingEngines> drawing_engines(const FrameRequest& request);
     Result<void> draw(const FrameRequest& request);
     Result<void> draw_with(gi::Engine& by, const FrameRequest& request, gi::Buffer& target);
     Result<void> make_picture(const FrameRequest& request);
@@ -84,7 +84,7 @@ struct Pipeline::State {
 
     std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
     std::unique_ptr<gi::Engine> stand_in;       ///< once it was needed (FrameRequest::stand_in)
-    Drawing drawing;                            ///< of the last frame
+    DrawingEngines drawing;                     ///< of the last frame
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
@@ -190,15 +190,15 @@ Result<void> Pipeline::State::build_cuts(bool hold_light) {
 }
 
 /// Returns the engines that draw this frame.
-Result<Drawing> Pipeline::State::drawing_engines(const FrameRequest& request) {
+Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& request) {
     const bool quick = request.stand_in || (request.stand_in_early && surfels.stats().pending > 0);
     const auto may_draw = [&](const gi::Engine& one) { return !quick || !one.info().reports_progress; };
     gi::Engine* const compared = other && may_draw(*other) ? other.get() : nullptr;
-    if (may_draw(*engine)) return Drawing{engine.get(), compared};
+    if (may_draw(*engine)) return DrawingEngines{engine.get(), compared};
     if (!stand_in) {
         LUCARNE_ASSIGN(stand_in, gi::make_engine(gi::default_engine().name));
     }
-    return Drawing{stand_in.get(), compared};
+    return DrawingEngines{stand_in.get(), compared};
 }
 
 /// Draws the G-buffer and lights it.
@@ -253,7 +253,7 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("load");
     LUCARNE_TRY(stream(request));
     times.end();
-    LUCARNE_ASSIGN(const Drawing now, drawing_engines(request));
+    LUCARNE_ASSIGN(const DrawingEngines now, drawing_engines(request));
     if (std::exchange(drawing, now) != now) presentation.restart();
     LUCARNE_TRY(build_cuts(drawing.engine->reads_light_cuts()));
     LUCARNE_TRY(take_bake(request));

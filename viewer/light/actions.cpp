@@ -101,6 +101,10 @@ std::span<const Action<const Lighting>> light_actions() {
     return kActions;
 }
 
+std::string_view engine_here(const View& view, Mood mood) {
+    return engine_of(mood, site_about(view).kind);
+}
+
 void light_for_place(const Lighting& model) {
     if (!model.lights.mood) return;
     const bool colours = *model.lights.mood == Mood::scan_colours;
@@ -112,13 +116,13 @@ void light_for_place(const Lighting& model) {
     }
     std::string& engine = model.view.method.engine;
     if (shows_moods(engine) && !gi::engine_is(engine, &gi::EngineInfo::unlit))
-        engine = engine_of(*model.lights.mood, site_about(model.view).kind);
+        engine = engine_here(model.view, *model.lights.mood);
 }
 
 void take_mood(const Lighting& model, Mood mood) {
     set_mood_here(model.view, mood);
     if (mood == Mood::scan_colours || shows_moods(model.view.method.engine))
-        model.view.method.engine = engine_of(mood, site_about(model.view).kind);
+        model.view.method.engine = engine_here(model.view, mood);
     model.lights.selected = 0;
     model.lights.mood = mood;
 }

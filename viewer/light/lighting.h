@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -30,6 +31,8 @@ void draw_sky(const Lighting& model);
 void draw_emitters(const Lighting& model);
 /// Lights the open scans in a mood, with the engine that shows it.
 void take_mood(const Lighting& model, Mood mood);
+/// Returns the engine that shows a mood where the camera is: in a house that was entered that of rooms.
+std::string_view engine_here(const View& view, Mood mood);
 /// Makes the light of the mood anew for where the camera is now: lamps in a house that was entered, which the
 /// sun outside would leave dark. Does nothing once the user has changed a light.
 void light_for_place(const Lighting& model);

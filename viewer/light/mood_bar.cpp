@@ -64,8 +64,7 @@ void draw_mood_bar(const Lighting& model) {
                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
                                    ImGuiWindowFlags_NoMove;
     if (ImGui::Begin("##moods", nullptr, flags)) {
-        const SiteKind kind = model.view.site.kind;
-        const bool lit = model.view.method.engine != engine_of(Mood::scan_colours, kind);
+        const bool lit = !gi::engine_is(model.view.method.engine, &gi::EngineInfo::unlit);
         for (const MoodInfo& info : moods()) {
             if (info.mood != moods().front().mood) ImGui::SameLine();
             const bool chosen = model.lights.mood == info.mood && lit == (info.mood != Mood::scan_colours);
@@ -75,7 +74,7 @@ void draw_mood_bar(const Lighting& model) {
             if (chosen) ImGui::PopStyleColor();
             if (ImGui::IsItemHovered())
                 ImGui::SetTooltip("%s\nEngine: %s", info.help.data(),
-                                  gi::label_of(engine_of(info.mood, kind)).c_str());
+                                  gi::label_of(engine_here(model.view, info.mood)).c_str());
         }
         if (lit && model.lights.mood == Mood::daylight) draw_hour(model);
     }

@@ -234,7 +234,7 @@ Mood usual_mood(const Site& site) {
 }
 
 std::string_view engine_of(Mood mood, SiteKind kind) {
-    if (mood == Mood::scan_colours) return "unlit";
+    if (mood == Mood::scan_colours) return gi::engine_with(&gi::EngineInfo::unlit).name;
     const bool outside = kind != SiteKind::interior;
     const bool under_sky =
         mood == Mood::daylight || (outside && (mood == Mood::evening || mood == Mood::raking_light));

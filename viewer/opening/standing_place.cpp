@@ -24,8 +24,8 @@ constexpr double kFloorInView = 3;                   ///< distance from which le
 constexpr double kLowestSun = 20, kHighestSun = 50;  ///< degrees
 constexpr double kSunStep = 5;                       ///< degrees
 
-constexpr double kLeastOpen =
-    .05;  ///< share of the floor that a window lights; gaps between points light less
+/// Share of the floor that a window lights; gaps between points light less.
+constexpr double kLeastOpen = .05;
 
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
 constexpr int kAzimuths = 24;
@@ -189,8 +189,8 @@ std::vector<glm::dvec3> places_on_the_floor(const OccupancyGrid& grid, const Sta
     return places;
 }
 
-/// Returns the direction in which most of the floor sees the sky. Neighbouring azimuths count as well, so
-/// that a single gap between points is no window.
+/// Returns the direction in which most of the floor sees the sky. The least of three neighbouring azimuths
+/// counts, because a gap between points is no window.
 std::optional<glm::dvec3> sunward_of(const OccupancyGrid& grid, const StandingPlace& place, double metre) {
     const std::vector<glm::dvec3> places = places_on_the_floor(grid, place, metre);
     constexpr int kSunAzimuths = 3 * kAzimuths;

@@ -97,8 +97,9 @@ void ViewSession::take_picture() {
         lost == 0 ? "" : fmt::format("left out of the picture: {}", latest->stats.lost_node);
     if (lost > 1) model_.health.nodes += fmt::format(" (and {} more)", lost - 1);
     const bool last_source = scans_.settled() && latest->source == scans_.source();
-    const bool whole =
-        latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source;
+    const bool own_engine = latest->stats.lit_by == sent_.method.engine;  // none that stands in
+    const bool whole = latest->request == sent_number_ && !latest->moving && own_engine &&
+                       latest->stats.nodes_pending == 0 && last_source;
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
     if (whole) help_in_the_dark(*latest);
 }

@@ -110,6 +110,20 @@ TEST_F(ViewerWindow, SavesItselfForScripts) {
     EXPECT_TRUE(lit(*window));
 }
 
+TEST_F(ViewerWindow, SavesThePictureOfTheEngineThatWasAskedForNotOfTheOneThatStandsIn) {
+    std::vector<io::Image8> saved;
+    for (const std::string engine : {"vpl", "reference --samples 1"}) {
+        engine_ = " --engine " + engine;
+        const std::string file = folder_ / (engine.substr(0, 3) + ".png");
+        start(" --screenshot " + file + " --frames 1");
+        ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
+        const auto window = io::read_png(file);
+        ASSERT_TRUE(window && lit(*window)) << engine;
+        saved.push_back(*window);
+    }
+    EXPECT_GT(difference(saved[0], saved[1]), 2) << "one path a pixel is noise";
+}
+
 TEST_F(ViewerWindow, AScanAsItIsEndsAsThePictureOfItsCache) {
     resolution_ = 0.5;  // 256 pictures take half the time
     const std::string options = " --scale 0.5 --scene " LUCARNE_SOURCE_DIR "/data/scenes/cornell.json";

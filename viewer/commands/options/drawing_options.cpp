@@ -152,7 +152,7 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command
         .add("--engine", options.render.engine,
              "Method of lighting, see below; without scene, mood and options of an engine: " +
-                 std::string(engine_of(Mood::scan_colours, SiteKind::object)) +
+                 std::string(gi::engine_with(&gi::EngineInfo::unlit).name) +
                  ", under a mood's sky: environment, else " + std::string(gi::default_engine().name))
         .type_name("NAME");
     command.add("--preset", options.render.preset, "Quality against speed, see below")
@@ -195,8 +195,8 @@ Result<void> take_render_settings(DrawingOptions& options) {
         options.engine_by_mood = options.render.engine.empty() && takes_all(engine, options.render.options);
         if (options.engine_by_mood) usual.engine = engine;
     } else if (options.scene.empty() && options.render.options.empty()) {
-        usual.engine = engine_of(Mood::scan_colours,
-                                 SiteKind::object);  // engines that light are asked for by their options
+        // Engines that light are asked for by their options.
+        usual.engine = gi::engine_with(&gi::EngineInfo::unlit).name;
     }
     usual.preset = kDefaultPreset;
     fill(options.render, usual);
@@ -249,7 +249,7 @@ Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree:
             const std::string_view engine = engine_of(*loaded.mood, site.kind);
             if (options.engine_by_mood && takes_all(engine, options.render.options)) loaded.engine = engine;
         } else {
-            const bool lit = options.render.engine != engine_of(Mood::scan_colours, site.kind);
+            const bool lit = !gi::engine_is(options.render.engine, &gi::EngineInfo::unlit);
             loaded.mood = lit ? usual_mood(site) : Mood::scan_colours;
         }
         loaded.first_view = !own_cameras;
