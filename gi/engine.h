@@ -61,6 +61,12 @@ class Engine {
     /// Whether the engine is making light from the light cuts over several frames (Frame::light_budget).
     /// Keep these cuts unchanged while this is true; a changed cut restarts the computation.
     virtual bool reads_light_cuts() const { return false; }
+    /// Whether frames of a motion that make little light (Frame::light_budget) take little time although the
+    /// engine is slow, because it keeps the light of a finished frame with this content and these settings.
+    virtual bool keeps_light(const EngineSettings& settings, uint64_t content) const {
+        static_cast<void>(settings), static_cast<void>(content);
+        return false;
+    }
     /// Returns the pictures of info().layers, in their order: a vec4 per pixel, over all frames accumulated
     /// so far.
     virtual std::vector<std::vector<glm::vec4>> layers() const { return {}; }

@@ -39,6 +39,8 @@ struct Frame {
     std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
     Bounds bounds{};                                 ///< of the whole cloud, m
     bool moving = false;  ///< the camera moves: an engine may use results of the frame before
+    /// Changes with what is lit and what lights it; not with the camera, settings and levels of detail.
+    uint64_t content = 0;
     /// How much of the light that outlasts a frame a moving frame makes. Unless it is `whole`, an engine
     /// shows the light that it finished last, and makes the new one bit by bit.
     StepBudget light_budget{};

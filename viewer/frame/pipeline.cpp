@@ -37,6 +37,7 @@ bool stopped(const FrameRequest& request) {
 struct DrawingEngines {
     gi::Engine* engine = nullptr;    ///< the picture's, or the one that stands in for it
     gi::Engine* compared = nullptr;  ///< the one that it is compared with, or null
+    bool keeps_light = false;        ///< a slow engine draws with the light that it keeps
     bool operator==(const DrawingEngines&) const = default;
 };
 }  // namespace
@@ -88,7 +89,8 @@ struct Pipeline::State {
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
-    bool fresh = false;  // the source is new, and nothing of it has been drawn yet
+    uint64_t content = 1;  // gi::Frame::content
+    bool fresh = false;    // the source is new, and nothing of it has been drawn yet
     // Scene, settings, budgets or engine have changed: cuts are chosen again, and the average starts again.
     bool changed = true;
 
@@ -107,6 +109,7 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
     bounds = octree::robust_bounds(*source);
     lost_node.clear();
     changed = fresh = true;
+    ++content;
     return {};
 }
 
@@ -128,7 +131,10 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
     chosen = chooser.choose(purpose, surfels.room());
     const glm::dvec3 origin = local.origin;
     local = gi::local_frame(request.camera.position, source->header().metres_per_unit);
-    if (local.origin != origin) cuts.tear();
+    if (local.origin != origin) {
+        cuts.tear();
+        ++content;  // engines keep places relative to the origin
+    }
     camera = gi::camera_view(request.camera, request.size, local);
     cuts.changed();
 }
@@ -195,6 +201,7 @@ Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& requ
     const auto may_draw = [&](const gi::Engine& one) { return !quick || !one.info().reports_progress; };
     gi::Engine* const compared = other && may_draw(*other) ? other.get() : nullptr;
     if (may_draw(*engine)) return DrawingEngines{engine.get(), compared};
+    if (engine->keeps_light(settings, content)) return DrawingEngines{engine.get(), compared, true};
     if (!stand_in) {
         LUCARNE_ASSIGN(stand_in, gi::make_engine(gi::default_engine().name));
     }
@@ -228,6 +235,7 @@ Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& requ
     std::vector<gi::Material> materials;
     for (const auto& material : scene.materials)
         materials.push_back(gi::device_material(material, scene.albedo.scale));
+    const bool keeps_light = &by == drawing.engine && drawing.keeps_light;
     gi::GlFrame on_device{device, surfels.pool(), cuts.of_frame(), gbuffer, target};
     gi::Frame frame{.camera = camera,
                     .lights = lights,
@@ -237,8 +245,10 @@ Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& requ
                     .index = presentation.accumulated(),
                     .environment = scene.environment,
                     .bounds = {local.to_local(header.min), local.to_local(header.max)},
-                    .moving = request.moving,
-                    .light_budget = request.light_budget,
+                    .moving = request.moving || keeps_light,
+                    .content = content,
+                    .light_budget = keeps_light && request.light_budget.whole() ? gi::StepBudget::paused()
+                                                                                : request.light_budget,
                     .bake = &by == engine.get() ? baked.bake.get() : nullptr,
                     .bake_offset = glm::vec3((bake.frame().origin - local.origin) * local.metres_per_unit),
                     .stop = request.stop,
@@ -255,7 +265,7 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.end();
     LUCARNE_ASSIGN(const DrawingEngines now, drawing_engines(request));
     if (std::exchange(drawing, now) != now) presentation.restart();
-    LUCARNE_TRY(build_cuts(drawing.engine->reads_light_cuts()));
+    LUCARNE_TRY(build_cuts(drawing.engine->reads_light_cuts() || drawing.keeps_light));
     LUCARNE_TRY(take_bake(request));
     const bool other_sizes = std::exchange(most_pixels, request.most_pixels) != request.most_pixels;
     const bool other_sides = std::exchange(front_only, request.front_only) != request.front_only;
@@ -436,7 +446,10 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
         scene.albedo.flatten != state_->scene.albedo.flatten ||
         scene.albedo.balance != state_->scene.albedo.balance)
         state_->surfels.make_stale();
-    state_->changed |= scene.light_inputs() != state_->scene.light_inputs();
+    if (scene.light_inputs() != state_->scene.light_inputs()) {
+        state_->changed = true;
+        ++state_->content;
+    }
     if (!(scene.look.clip == state_->scene.look.clip) ||
         scene.look.open_holes != state_->scene.look.open_holes)
         state_->cuts.tear();

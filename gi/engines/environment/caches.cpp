@@ -136,4 +136,26 @@ std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const Surf
     return all;
 }
 
+void fill_by_means(const CameraView& camera, std::span<const SurfacePoint> surfaces,
+                   std::span<const uint32_t> lonely, std::span<glm::vec4> light) {
+    if (lonely.empty()) return;
+    std::vector<bool> known(surfaces.size());
+    for (size_t i = 0; i < surfaces.size(); ++i) known[i] = surfaces[i].radius > 0;
+    for (const uint32_t pixel : lonely) known[pixel] = false;
+    const uint32_t columns = (camera.width + kTileSide - 1) / kTileSide;
+    const auto tile_of = [&](size_t pixel) {
+        return pixel / camera.width / kTileSide * columns + pixel % camera.width / kTileSide;
+    };
+    std::vector<glm::dvec4> sums(size_t{columns} * ((camera.height + kTileSide - 1) / kTileSide));
+    glm::dvec4 all(0.0);
+    for (size_t i = 0; i < known.size(); ++i)
+        if (known[i]) sums[tile_of(i)] += glm::dvec4(glm::dvec3(light[i]), 1);
+    for (const glm::dvec4& sum : sums) all += sum;
+    for (const uint32_t pixel : lonely) {
+        const glm::dvec4& of_tile = sums[tile_of(pixel)];
+        const glm::dvec4& sum = of_tile.w > 0 ? of_tile : all;
+        light[pixel] = sum.w > 0 ? glm::vec4(glm::vec3(sum / sum.w), 0) : glm::vec4(0.0f);
+    }
+}
+
 }  // namespace lucarne::gi::environment

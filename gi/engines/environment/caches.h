@@ -56,4 +56,9 @@ std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const Surf
                                   std::span<const uint32_t> pixels, std::span<const Cache> caches,
                                   std::span<glm::vec4> light);
 
+/// Sets the light of these pixels, which no cache counts for, to the mean of the other pixels of their tile
+/// of the picture, or of the whole picture.
+void fill_by_means(const CameraView& camera, std::span<const SurfacePoint> surfaces,
+                   std::span<const uint32_t> lonely, std::span<glm::vec4> light);
+
 }  // namespace lucarne::gi::environment

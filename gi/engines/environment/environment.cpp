@@ -9,6 +9,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/engines/environment/caches.h"
+#include "gi/engines/environment/kept_caches.h"
 #include "gi/engines/environment/options.h"
 #include "gi/engines/environment/primaries.h"
 #include "gi/engines/environment/secondaries.h"
@@ -17,6 +18,7 @@
 #include "gi/gather/tree_lighting.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
+#include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
 #include "gi/shared/brdf.h"
 #include "io/core/random.h"
@@ -47,11 +49,15 @@ constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, 
 constexpr size_t kMostSecondariesHeld = 262144;  ///< their micro-buffers take 85 MB; more are not kept
 constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
+constexpr size_t kRepairsInMotion = 2048;        ///< likewise, in a frame of a motion
 
 class EnvironmentEngine final : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
     std::vector<std::pair<std::string, double>> stats() const override;
+    bool keeps_light(const EngineSettings& settings, uint64_t content) const override {
+        return kept_.hold(settings, content);
+    }
 
  protected:
     void update(const Changes& changes) override { lighting_.update(changes); }
@@ -64,8 +70,14 @@ class EnvironmentEngine final : public Engine {
     Result<std::vector<glm::vec3>> irradiance_at(Frame& frame, std::span<const uint32_t> sides,
                                                  Gathered what);
     Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
+    Result<std::vector<Cache>> gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
+                                         std::span<const uint32_t> pixels, float spacing, Gathered what,
+                                         std::span<glm::vec4> light);
     Result<void> repair(Frame& frame, std::span<const SurfacePoint> surfaces, std::vector<uint32_t> lonely,
                         Gathered what, std::vector<glm::vec4>& light);
+    Result<void> follow(Frame& frame);
+    Result<void> reflect_and_upload(Frame& frame, Gathered what, std::span<const SurfacePoint> surfaces,
+                                    std::vector<glm::vec4>& light);
 
     void report(Frame& frame, double share);
 
@@ -73,6 +85,8 @@ class EnvironmentEngine final : public Engine {
     MicroBuffers buffers_, secondary_buffers_, repairs_;
     Secondaries secondaries_;
     std::vector<Cache> caches_;
+    KeptCaches kept_;
+    bool lit_ = false;  ///< the light that surfels send out is there: the last frame was finished
     GatherCounts lobes_;
     uint64_t seed_ = 0;
     size_t primaries_ = 0, gathering_ = 0, repaired_ = 0, reported_ = 0;
@@ -93,6 +107,24 @@ GatherPoint point_at(const glm::vec3& position, const glm::vec3& normal, float l
             .exponent = 0,
             .axis = normal,
             .scale = 1};
+}
+
+/// Returns those of the pixels that lie on a grid of this spacing.
+std::vector<uint32_t> every(uint32_t spacing, const CameraView& camera, std::span<const uint32_t> pixels) {
+    std::vector<uint32_t> chosen;
+    for (const uint32_t pixel : pixels)
+        if ((pixel % camera.width) % spacing == spacing / 2 &&
+            (pixel / camera.width) % spacing == spacing / 2)
+            chosen.push_back(pixel);
+    return chosen;
+}
+
+/// Returns the pixels that show a surface.
+std::vector<uint32_t> pixels_of(std::span<const SurfacePoint> surfaces) {
+    std::vector<uint32_t> pixels;
+    for (uint32_t i = 0; i < surfaces.size(); ++i)
+        if (surfaces[i].radius > 0) pixels.push_back(i);
+    return pixels;
 }
 
 /// Reports this share of the picture as finished.
@@ -198,47 +230,51 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
     return {};
 }
 
+/// Gathers the light of these pixels, about `spacing` pixels apart. Returns caches for those between them.
+Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
+                                                        std::span<const uint32_t> pixels, float spacing,
+                                                        Gathered what, std::span<glm::vec4> light) {
+    const CameraView& camera = frame.camera;
+    std::vector<Cache> caches;
+    for (size_t first = 0; first < pixels.size(); first += kRepairsAtOnce) {
+        if (frame.stopped()) break;
+        const auto some = pixels.subspan(first, std::min(kRepairsAtOnce, pixels.size() - first));
+        std::vector<GatherPoint> points;
+        for (const uint32_t pixel : some) {
+            const SurfacePoint& at = surfaces[pixel];
+            points.push_back(point_at(at.position, at.normal, at.radius, mix64(seed_ + 2, pixel)));
+            points.back().viewer = at.viewer;
+        }
+        LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer], seed_,
+                                             repairs_, frame.stop));
+        LUCARNE_ASSIGN(const auto gathered, lighting_.gatherer().shade(lighting_.opencl(), what, repairs_));
+        for (size_t i = 0; i < gathered.size(); ++i) {
+            const SurfacePoint& at = surfaces[some[i]];
+            light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
+            float depth = 0;
+            view_place(camera, at.position, depth);
+            const float reach = 1.5f * spacing * pixel_height(camera, depth) + at.radius;
+            caches.push_back({at.position, at.normal, reach, gathered[i]});
+        }
+    }
+    repaired_ += pixels.size();
+    return caches;
+}
+
 /// Gathers light for pixels that no cache counts for: at some of them for those about them, and then at all
 /// that are still lonely.
 Result<void> EnvironmentEngine::repair(Frame& frame, std::span<const SurfacePoint> surfaces,
                                        std::vector<uint32_t> lonely, Gathered what,
                                        std::vector<glm::vec4>& light) {
     const TimedPass pass(frame, "lonely pixels");
-    const CameraView& camera = frame.camera;
     for (const uint32_t spacing : {kRepairSpacing, 1u}) {
-        std::vector<uint32_t> chosen;
-        for (const uint32_t pixel : lonely)
-            if ((pixel % camera.width) % spacing == spacing / 2 &&
-                (pixel / camera.width) % spacing == spacing / 2)
-                chosen.push_back(pixel);
-        std::vector<Cache> caches;
-        for (size_t first = 0; first < chosen.size(); first += kRepairsAtOnce) {
-            if (frame.stopped()) return {};
-            const std::span<const uint32_t> some =
-                std::span(chosen).subspan(first, std::min(kRepairsAtOnce, chosen.size() - first));
-            std::vector<GatherPoint> points;
-            for (const uint32_t pixel : some) {
-                const SurfacePoint& at = surfaces[pixel];
-                points.push_back(point_at(at.position, at.normal, at.radius, mix64(seed_ + 2, pixel)));
-                points.back().viewer = at.viewer;
-            }
-            LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer],
-                                                 seed_, repairs_, frame.stop));
-            LUCARNE_ASSIGN(const auto gathered,
-                           lighting_.gatherer().shade(lighting_.opencl(), what, repairs_));
-            for (size_t i = 0; i < gathered.size(); ++i) {
-                const SurfacePoint& at = surfaces[some[i]];
-                light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
-                float depth = 0;
-                view_place(camera, at.position, depth);
-                caches.push_back(
-                    {at.position, at.normal,
-                     1.5f * static_cast<float>(spacing) * pixel_height(camera, depth) + at.radius,
-                     gathered[i]});
-            }
-        }
-        repaired_ += chosen.size();
-        if (spacing > 1) lonely = interpolate(camera, surfaces, lonely, caches, light);
+        const std::vector<uint32_t> chosen = every(spacing, frame.camera, lonely);
+        LUCARNE_ASSIGN(const auto caches,
+                       gather_at(frame, surfaces, chosen, static_cast<float>(spacing), what, light));
+        if (frame.stopped()) return {};
+        if (spacing == 1) continue;
+        lonely = interpolate(frame.camera, surfaces, lonely, caches, light);
+        caches_.insert(caches_.end(), caches.begin(), caches.end());
     }
     return {};
 }
@@ -277,16 +313,50 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     std::vector<uint32_t> lonely;
     {
         const TimedPass pass(frame, "interpolation");
-        std::vector<uint32_t> pixels;
-        for (uint32_t i = 0; i < surfaces.size(); ++i)
-            if (surfaces[i].radius > 0) pixels.push_back(i);
-        lonely = interpolate(frame.camera, surfaces, pixels, caches_, light);
+        lonely = interpolate(frame.camera, surfaces, pixels_of(surfaces), caches_, light);
     }
     LUCARNE_TRY(repair(frame, surfaces, std::move(lonely), what, light));
     if (frame.stopped()) return {};
-    LUCARNE_TRY(reflect(frame, lighting_.opencl(), lighting_.gatherer(), what, surfaces, light, lobes_));
+    LUCARNE_TRY(reflect_and_upload(frame, what, surfaces, light));
+    if (frame.stopped()) return {};
+    lit_ = true;
+    // Lobes would have to be gathered again in every frame.
+    if (!glossy(frame)) kept_.take(frame.camera, s, frame.content, caches_);
+    return {};
+}
+
+Result<void> EnvironmentEngine::reflect_and_upload(Frame& frame, Gathered what,
+                                                   std::span<const SurfacePoint> surfaces,
+                                                   std::vector<glm::vec4>& light) {
+    LUCARNE_TRY(reflect(frame, lighting_.opencl(), lighting_.gatherer(), what,
+                        {surfaces.begin(), surfaces.end()}, light, lobes_));
     if (!frame.stopped()) upload_radiance(frame, light);
     return {};
+}
+
+/// Draws a frame of a motion with the light of the frames before it. Where that is not known, some pixels
+/// gather if the last whole frame was finished, and what is left has the mean light of what is about it.
+Result<void> EnvironmentEngine::follow(Frame& frame) {
+    const Gathered what = shown(frame.settings, lighting_.has_sky());
+    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
+    std::vector<uint32_t> lonely;
+    {
+        const TimedPass pass(frame, "interpolation");
+        lonely = interpolate(frame.camera, surfaces, pixels_of(surfaces), kept_.all(), light);
+    }
+    if (lit_) {
+        const TimedPass pass(frame, "lonely pixels");
+        uint32_t spacing = kRepairSpacing;
+        std::vector<uint32_t> chosen = every(spacing, frame.camera, lonely);
+        while (chosen.size() > kRepairsInMotion) chosen = every(spacing *= 2, frame.camera, lonely);
+        LUCARNE_ASSIGN(const auto caches,
+                       gather_at(frame, surfaces, chosen, static_cast<float>(spacing), what, light));
+        lonely = interpolate(frame.camera, surfaces, lonely, caches, light);
+        kept_.add(caches);
+    }
+    fill_by_means(frame.camera, surfaces, lonely, light);
+    return reflect_and_upload(frame, what, surfaces, light);
 }
 
 Result<void> EnvironmentEngine::render(Frame& frame) {
@@ -296,7 +366,12 @@ Result<void> EnvironmentEngine::render(Frame& frame) {
     primaries_ = gathering_ = repaired_ = reported_ = 0;
     secondaries_ = {};
     const bool direct = wants_direct(frame.settings);
-    if (wants_indirect(frame.settings) || (direct && lighting_.has_sky())) LUCARNE_TRY(gather(frame));
+    if (wants_indirect(frame.settings) || (direct && lighting_.has_sky())) {
+        const bool in_parts = frame.moving && !frame.light_budget.whole();
+        const bool follows = in_parts && keeps_light(frame.settings, frame.content);
+        if (!follows) lit_ = false;
+        LUCARNE_TRY(follows ? follow(frame) : gather(frame));
+    }
     if (frame.stopped()) return {};
     if (direct) LUCARNE_TRY(lighting_.add_direct(frame));
     report(frame, 1);

@@ -103,6 +103,30 @@ TEST_F(PipelineTest, TheNodesOfTheEngineThatStandsInInMotionAreThereBeforeTheMot
     EXPECT_EQ(moving.complete(), 1);
 }
 
+TEST_F(PipelineTest, ASlowEngineDrawsTheMotionItselfAsLongAsItKeepsTheLight) {
+    if (!device_->opencl()) GTEST_SKIP() << "no OpenCL";
+    const auto drawn = [&](bool moving) {
+        request_.moving = request_.stand_in = moving;
+        request_.light_budget = moving ? gi::StepBudget::timed(0.01) : gi::StepBudget{};
+        const auto stats = pipeline_->render(request_);
+        EXPECT_TRUE(stats) << stats.error().line();
+        return stats.value_or(FrameStats{});
+    };
+    Method method;
+    method.engine = "environment";
+    ASSERT_TRUE(pipeline_->set_method(method));
+    EXPECT_EQ(drawn(true).lit_by, gi::default_engine().name) << "there is no light yet";
+    EXPECT_EQ(drawn(false).lit_by, "environment");
+    request_.camera.target += glm::dvec3(0.02, 0, 0);
+    const FrameStats moved = drawn(true);
+    EXPECT_EQ(moved.lit_by, "environment");
+    EXPECT_FALSE(std::ranges::count(moved.passes, "surfel tree", &gi::PassTimes::Pass::name));
+    gi::Scene scene = pipeline_->scene();
+    scene.lights[0].position.x += 0.1;
+    ASSERT_TRUE(pipeline_->set_scene(scene));
+    EXPECT_EQ(drawn(true).lit_by, gi::default_engine().name) << "other light";
+}
+
 TEST_F(PipelineTest, TheDefaultEngineDrawsUntilAllNodesAreThere) {
     request_.wait = false;
     request_.stand_in_early = true;

@@ -83,7 +83,8 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     ASSERT_TRUE(eventually([&] {
         xdo("key ctrl+e sleep 0.3");
         return std::filesystem::exists(csv);
-    })) << "measure\n" << log();
+    })) << "measure\n"
+        << log();
     const size_t length = bytes_of(csv).find("Distance 1,distance,length,");
     ASSERT_NE(length, std::string::npos) << bytes_of(csv);
     EXPECT_GT(std::stod(bytes_of(csv).substr(length + 27)), 0.1) << "metres in a box of 5.5";
