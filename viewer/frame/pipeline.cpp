@@ -29,6 +29,10 @@ namespace {
 constexpr double kGapsPerPoint = 2;  // gaps that are filled: half their width, in diameters of points
 constexpr double kAhead = 0.5;       // s of the camera's motion that are loaded ahead
 
+/// Time in which a frame without `wait` takes nodes that have arrived, s, and as a share of the last frame's
+/// time: a slow frame takes what has arrived during it, or a picture would need dozens of slow frames.
+constexpr double kLeastLoadingTime = 0.002, kLoadingShare = 0.1;
+
 bool stopped(const FrameRequest& request) {
     return request.stop && *request.stop;
 }
@@ -173,10 +177,11 @@ void Pipeline::State::look_ahead(const FrameRequest& request) {
 
 /// Loads nodes of the chosen cuts; with `wait` as many as the caps allow.
 Result<void> Pipeline::State::stream(const FrameRequest& request) {
-    const bool wait = request.wait || fresh;
     std::vector<const octree::Cut*> later;
     for (const octree::Cut& cut : ahead) later.push_back(&cut);
-    LUCARNE_TRY(surfels.load(chosen.all(), later, wait));
+    const double seconds = std::max(kLeastLoadingTime, kLoadingShare * last_seconds);
+    LUCARNE_TRY(request.wait || fresh ? surfels.load_all(chosen.all())
+                                      : surfels.load(chosen.all(), later, seconds));
     const auto error = surfels.take_error();
     if (error) return {};
     if (request.wait) return error;

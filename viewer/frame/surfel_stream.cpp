@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -13,9 +14,6 @@
 namespace lucarne::viewer {
 namespace {
 
-// Time in which a frame without `wait` accepts arrived nodes, s: enough for about a hundred nodes, which the
-// loading threads have packed.
-constexpr double kLoadingTime = 0.002;
 constexpr size_t kNodesAtOnce = 8;  // nodes accepted between two looks at the clock
 // Share of the device's memory for surfels. The shadow maps hold the light cut's surfels a second time;
 // pictures and maps take the rest.
@@ -178,23 +176,28 @@ Result<void> SurfelStream::apply(std::span<const Stream::Event> events) {
     return {};
 }
 
-/// Accepts arrived nodes; with `wait` all of them.
-Result<void> SurfelStream::take_arrivals(bool wait) {
+/// Accepts nodes that have arrived, for so many seconds.
+Result<void> SurfelStream::take_arrivals(double seconds) {
     const auto start = std::chrono::steady_clock::now();
     for (;;) {
         const auto events = residency_->poll(kNodesAtOnce);
         LUCARNE_TRY(apply(events));
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-        if (events.empty() || (!wait && spent.count() > kLoadingTime)) return {};
+        if (events.empty() || spent.count() > seconds) return {};
     }
 }
 
 Result<void> SurfelStream::load(const std::vector<const octree::Cut*>& wanted,
-                                const std::vector<const octree::Cut*>& later, bool wait) {
+                                const std::vector<const octree::Cut*>& later, double seconds) {
     residency_->want(wanted, later);
+    return take_arrivals(seconds);
+}
+
+Result<void> SurfelStream::load_all(const std::vector<const octree::Cut*>& wanted) {
+    residency_->want(wanted, {});
     for (bool all = false; !all;) {
-        all = !wait || residency_->wait();
-        LUCARNE_TRY(take_arrivals(wait));
+        all = residency_->wait();
+        LUCARNE_TRY(take_arrivals(INFINITY));
     }
     return {};
 }

@@ -44,11 +44,13 @@ class SurfelStream {
     /// Errors: no device memory; a node that the measuring of baked light needs cannot be read.
     Result<void> renew(const gi::Scene& scene);
 
-    /// Loads nodes of these cuts, then of those that may be wanted `later`. With `wait` it returns when all
-    /// are there that the caps allow; otherwise it accepts arrived nodes for a short time. Errors: device
-    /// memory.
+    /// Begins to load nodes of these cuts, then of those that may be wanted `later`, and takes those that
+    /// have arrived, for about so many seconds: two milliseconds are enough for a hundred nodes. Errors:
+    /// device memory.
     Result<void> load(const std::vector<const octree::Cut*>& wanted,
-                      const std::vector<const octree::Cut*>& later, bool wait);
+                      const std::vector<const octree::Cut*>& later, double seconds);
+    /// Loads all nodes of these cuts that the caps allow. Errors likewise.
+    Result<void> load_all(const std::vector<const octree::Cut*>& wanted);
     /// Returns why a node could not be read, once. It is left out with its descendants.
     Result<void> take_error() { return residency_->take_error(); }
 
@@ -80,7 +82,7 @@ class SurfelStream {
     void take_fillings();
     Result<void> load_fillings();
     Result<void> apply(std::span<const Stream::Event> events);
-    Result<void> take_arrivals(bool wait);
+    Result<void> take_arrivals(double seconds);
 
     gi::Device& device_;
     const StreamCaps caps_;

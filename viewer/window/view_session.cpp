@@ -420,6 +420,7 @@ void ViewSession::send_request() {
                                          ? gi::StepBudget::paused()
                                          : gi::StepBudget::timed(kLightShare * model_.view.frame_time);
     }
+    if (!model_.view.picture) request.frame.light_budget = {};  // there is no earlier light to be shown
     if (std::ranges::any_of(scans_.rows(), is_sketch))
         request.frame.most_pixels =
             std::max(1.5f, scaled(kSketchDots) * request.frame.size.height / window_.framebuffer().height);

@@ -40,7 +40,7 @@ TEST_F(HostCutTest, HasTheSurfelsThatTheDeviceHas) {
             ASSERT_TRUE(stream.set_source(source_, scene_));
             ASSERT_TRUE(stream.renew(scene_));
             const octree::Cut chosen = cut(points);
-            ASSERT_TRUE(stream.load({&chosen}, {}, true));
+            ASSERT_TRUE(stream.load_all({&chosen}));
             std::vector<gi::CutEntry> entries;
             for (const auto& node : chosen.nodes) entries.push_back({node.node, node.count});
             gi::DeviceCut made;
