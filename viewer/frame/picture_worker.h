@@ -30,7 +30,8 @@ struct PictureRequest {
     /// What makes another picture of it, for comparisons. `scene_version` stands for the scene.
     auto content() const {
         return std::tie(frame.camera, frame.size, frame.most_pixels, frame.front_only, frame.accumulate,
-                        frame.stand_in, method, scene_version, shader_version, moving, sketch);
+                        frame.stand_in, frame.colours_only, method, scene_version, shader_version, moving,
+                        sketch);
     }
 };
 

@@ -89,6 +89,7 @@ struct Pipeline::State {
 
     std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
     std::unique_ptr<gi::Engine> stand_in;       ///< once it was needed (FrameRequest::stand_in)
+    std::unique_ptr<gi::Engine> colours;        ///< likewise (FrameRequest::colours_only)
     DrawingEngines drawing;                     ///< of the last frame
     gi::EngineSettings settings;
     CutBudgets budgets;
@@ -202,6 +203,12 @@ Result<void> Pipeline::State::build_cuts(bool hold_light) {
 
 /// Returns the engines that draw this frame.
 Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& request) {
+    if (request.colours_only) {
+        if (!colours) {
+            LUCARNE_ASSIGN(colours, gi::make_engine(gi::engine_with(&gi::EngineInfo::unlit).name));
+        }
+        return DrawingEngines{colours.get()};
+    }
     const bool quick = request.stand_in || (request.stand_in_early && surfels.stats().pending > 0);
     const auto may_draw = [&](const gi::Engine& one) { return !quick || !one.info().reports_progress; };
     gi::Engine* const compared = other && may_draw(*other) ? other.get() : nullptr;

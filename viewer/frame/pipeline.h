@@ -56,7 +56,8 @@ struct FrameRequest {
     /// Lets the default engine draw in the place of one that takes long, and leaves a compared engine out
     /// that does.
     bool stand_in = false;
-    bool stand_in_early = false;              ///< likewise, as long as nodes are on their way
+    bool stand_in_early = false;  ///< likewise, as long as nodes are on their way
+    bool colours_only = false;    ///< shows the points' colours without light: the fastest picture
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
     Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
 };

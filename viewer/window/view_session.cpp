@@ -409,7 +409,8 @@ void ViewSession::send_request() {
     request.frame.accumulate = !request.moving && !std::ranges::any_of(scans_.rows(), grows);
     if (shot_) request.pictures = shot_->pictures;
     request.frame.moving = request.moving;
-    request.frame.stand_in = request.moving || !model_.view.picture;  // something is seen at once
+    request.frame.stand_in = request.moving;
+    request.frame.colours_only = !model_.view.picture;  // something is seen at once, and light follows
     request.frame.stand_in_early = true;
     if (request.moving) {
         const ImageSize size = quality_.size(request.frame.size);
@@ -420,7 +421,6 @@ void ViewSession::send_request() {
                                          ? gi::StepBudget::paused()
                                          : gi::StepBudget::timed(kLightShare * model_.view.frame_time);
     }
-    if (!model_.view.picture) request.frame.light_budget = {};  // there is no earlier light to be shown
     if (std::ranges::any_of(scans_.rows(), is_sketch))
         request.frame.most_pixels =
             std::max(1.5f, scaled(kSketchDots) * request.frame.size.height / window_.framebuffer().height);

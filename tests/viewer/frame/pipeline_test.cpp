@@ -93,6 +93,19 @@ TEST_F(PipelineTest, SaysWhichEnginesDrewThePictureAndLeavesASlowComparedOneOutO
     EXPECT_EQ(frame("unlit").compared_with, "reference");
 }
 
+TEST_F(PipelineTest, ShowsTheColoursAloneInThePlaceOfAnyEngineWhenAsked) {
+    const auto picture = [&] { return pipeline_->picture().download_all<uint32_t>(96 * 64); };
+    frame("unlit");
+    const auto colours = picture();
+    request_.colours_only = true;
+    for (const char* engine : {"vpl", "reference"}) {
+        EXPECT_EQ(frame(engine).lit_by, "unlit");
+        EXPECT_EQ(picture(), colours);
+    }
+    request_.colours_only = false;
+    EXPECT_EQ(frame("vpl").lit_by, "vpl");
+}
+
 TEST_F(PipelineTest, TheNodesOfTheEngineThatStandsInInMotionAreThereBeforeTheMotion) {
     request_.wait = false;
     while (frame("reference").complete() < 1) {  // nodes arrive while frames are drawn
