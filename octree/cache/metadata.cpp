@@ -167,6 +167,22 @@ std::vector<StationColour> colours_of(const json& value, size_t scans) {
     return colours;
 }
 
+std::vector<EstimatedStation> estimated_stations_of(const json& value,
+                                                    const std::vector<io::ScanInfo>& scans) {
+    require(value.is_array() && value.size() <= kMostEstimatedStations, "a list of stations is expected");
+    std::vector<EstimatedStation> stations;
+    for (const auto& item : value) {
+        const EstimatedStation station{index_of(item.at("scan"), scans.size()),
+                                       vector_of(item.at("position"))};
+        require(scans[station.scan].stations.empty(), "estimated stations of a scan that states its own");
+        require(stations.empty() || stations.back().scan <= station.scan, "stations in a wrong order");
+        for (int axis = 0; axis < 3; ++axis)
+            require(std::abs(station.position[axis]) <= kFarthest, "a station too far from the origin");
+        stations.push_back(station);
+    }
+    return stations;
+}
+
 json filling_json(const FillingSection& filling) {
     json result{{"points", filling.points}};
     if (filling.points == 0) return result;
@@ -250,6 +266,9 @@ std::string metadata_text(const SourceHeader& header) {
     if (!header.options.empty()) root["options"] = header.options;
     if (!header.layouts.empty()) root["layouts"] = std::move(layouts);
     for (const auto& colour : header.station_colours) root["station_colours"].push_back(colour_json(colour));
+    for (const auto& station : header.estimated_stations)
+        root["estimated_stations"].push_back(
+            {{"scan", station.scan}, {"position", vector_json(station.position)}});
     if (header.filling) root["filling"] = filling_json(*header.filling);
     // File names are bytes and not always UTF-8. Invalid sequences become U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);
@@ -280,6 +299,8 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         for (const auto& scan : root.at("scans")) header.scans.push_back(scan_of(scan));
         if (root.contains("station_colours"))
             header.station_colours = colours_of(root.at("station_colours"), header.scans.size());
+        if (root.contains("estimated_stations"))
+            header.estimated_stations = estimated_stations_of(root.at("estimated_stations"), header.scans);
         if (root.contains("filling")) header.filling = filling_of(root.at("filling"));
         return header;
     } catch (const std::exception& error) {

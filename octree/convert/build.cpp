@@ -256,6 +256,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     report.dropped = facts.dropped;
     report.estimated_normals = normals.value_or(false) ? facts.without_normal : 0;
     report.inputs = facts.inputs;
+    report.estimated_stations = facts.stations.size();
     report.chunks = store.chunks().size();
     report.nodes = writer.nodes();
     report.bytes = writer.bytes();

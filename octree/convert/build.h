@@ -49,7 +49,8 @@ struct BuildReport {
     uint64_t estimated_normals = 0;  ///< points whose normal was estimated because their input gave none
     std::vector<io::Contents> inputs;
     uint64_t nodes = 0, chunks = 0, bytes = 0;
-    uint64_t filled = 0;  ///< synthetic surfels in holes
+    uint64_t estimated_stations = 0;  ///< of inputs that state none
+    uint64_t filled = 0;              ///< synthetic surfels in holes
     std::vector<StageTime> stages;
 };
 

@@ -119,6 +119,7 @@ SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::
         adjust_colour(header.scans.back(), inputs.source(i).schema(), schema, contents);
         if (i < facts.inputs.size()) header.scans.back().losses = contents.losses;
     }
+    header.estimated_stations = facts.stations;
     return header;
 }
 

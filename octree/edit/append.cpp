@@ -123,6 +123,11 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
         if (!header.scans.back().unit_stated) header.scans.back().metres_per_unit = before.metres_per_unit;
         header.scans.back().losses = facts.inputs[i - 1].losses;
     }
+    for (EstimatedStation station : facts.stations) {
+        station.scan += static_cast<uint32_t>(before.scans.size() - 1);
+        if (header.estimated_stations.size() < kMostEstimatedStations)
+            header.estimated_stations.push_back(station);
+    }
     return header;
 }
 

@@ -58,6 +58,14 @@ struct FillingSection {
     bool operator==(const FillingSection&) const = default;
 };
 
+/// A place where a scanner stood, as the points show; no file states it (octree/stations).
+struct EstimatedStation {
+    uint32_t scan = 0;         ///< index in SourceHeader::scans
+    glm::dvec3 position{0.0};  ///< in the coordinates of the points
+    bool operator==(const EstimatedStation&) const = default;
+};
+inline constexpr size_t kMostEstimatedStations = 1024;
+
 /// Describes a source as a whole.
 struct SourceHeader {
     io::Schema schema;
@@ -69,6 +77,8 @@ struct SourceHeader {
     double metres_per_unit = 1.0;
     std::vector<io::ScanInfo> scans;
     std::vector<StationColour> station_colours;  ///< sorted by scan and station
+    /// Stations of scans that state none, in the order of the scans. At most kMostEstimatedStations.
+    std::vector<EstimatedStation> estimated_stations;
     /// Set if holes were looked for.
     std::optional<FillingSection> filling;
     std::string options;  ///< how the scans were read where it differs from the default: io::options_text

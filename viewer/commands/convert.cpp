@@ -117,6 +117,7 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
                               {"bytes", report.bytes},
                               {"filled", report.filled},
                               {"estimated_normals", report.estimated_normals},
+                              {"estimated_stations", report.estimated_stations},
                               {"stages", std::move(stages)},
                               {"left_out", losses_json(summary.losses)},
                               {"inputs", summary.inputs},
@@ -201,6 +202,9 @@ Result<void> convert(ConvertOptions options) {
     if (report.filled > 0)
         log::info("{} fill holes of the scan; they are drawn, but never exported",
                   counted(report.filled, "synthetic surfels"));
+    if (report.estimated_stations > 0)
+        log::info("{} estimated from the order of the points",
+                  counted(report.estimated_stations, "stations"));
     if (report.estimated_normals > 0)
         log::info("normals of {} were estimated", counted(report.estimated_normals, "points"));
     const Summary summary(build.inputs, report.inputs);

@@ -70,6 +70,9 @@ Json describe_octree(const octree::NodeSource& cache, const char* kind) {
                    {"metres_per_unit", header.metres_per_unit},
                    {"attributes", attributes_json(header.schema)},
                    {"scans", std::move(scans)}};
+    for (const auto& station : header.estimated_stations)
+        described["estimated_stations"].push_back(
+            {{"scan", station.scan}, {"position", vector_json(station.position)}});
     if (header.filling) described["synthetic_surfels"] = header.filling->points;
     for (const auto& colour : header.station_colours) {
         Json& station = described["station_colours"].emplace_back();

@@ -11,6 +11,7 @@
 #include "io/formats/common/color_depth.h"
 #include "octree/convert/chunks/record_bytes.h"
 #include "octree/convert/scans/early_count.h"
+#include "octree/stations/find_stations.h"
 #include "octree/tree/point_normals.h"
 
 namespace lucarne::octree {
@@ -48,6 +49,13 @@ std::string get_text(ByteReader& reader) {
     return {text.begin(), text.end()};
 }
 
+/// Adds the stations that an input's points show.
+void add_stations(ScanFacts& facts, size_t input, const io::ScanInfo& info, const ScanRuns& runs) {
+    for (const glm::dvec3& position : find_stations(runs, info.metres_per_unit).positions)
+        if (facts.stations.size() < kMostEstimatedStations)
+            facts.stations.push_back({static_cast<uint32_t>(input), position});
+}
+
 }  // namespace
 
 Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
@@ -81,6 +89,11 @@ std::vector<std::byte> ScanFacts::save() const {
             writer.put(loss.count);
         }
     }
+    writer.put(uint64_t{stations.size()});
+    for (const auto& station : stations) {
+        writer.put(station.scan);
+        writer.put(station.position);
+    }
     return writer.take();
 }
 Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
@@ -104,6 +117,10 @@ Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
         }
         facts.inputs.push_back(std::move(input));
     }
+    for (auto left = reader.get<uint64_t>(); left > 0 && reader.sound(); --left) {
+        const auto scan = reader.get<uint32_t>();
+        facts.stations.push_back({scan, reader.get<glm::dvec3>()});
+    }
     if (!reader.sound()) return failed("scan", "has an incomplete record");
     return facts;
 }
@@ -125,6 +142,9 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
     for (size_t input = first; input < inputs.inputs(); ++input) {
         io::Contents seen{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
         io::ColorDepth depth(schema);
+        const io::ScanInfo& info = inputs.source(input).info();
+        const bool search = info.stations.empty();
+        ScanRuns runs;
         LUCARNE_ASSIGN(
             LeftOut left,
             read_input(inputs, input, batch_bytes, [&](std::span<const std::byte> records) -> Result<void> {
@@ -136,11 +156,12 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
                 seen.points += records.size() / schema.stride;
                 depth.add(records);
                 facts.without_normal += normals.missing(records, schema.stride);
+                if (search) runs.add(schema, records);
                 if (early) early->add(schema, records, seen.min, seen.max);
                 return seen_by ? seen_by(records) : Result<void>();
             }));
-        for (const auto& loss : left.losses)
-            log::warn("{}: {}", inputs.source(input).info().path, counted(loss.count, loss.what));
+        for (const auto& loss : left.losses) log::warn("{}: {}", info.path, counted(loss.count, loss.what));
+        if (search) add_stations(facts, input, info, runs);
         seen.color_bits = depth.bits();
         facts.min = glm::min(facts.min, seen.min);
         facts.max = glm::max(facts.max, seen.max);

@@ -3,6 +3,7 @@
 #include "io/formats/scan.h"
 #include "octree/convert/chunks/chunk_store.h"
 #include "octree/convert/scans/unify.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 
@@ -14,6 +15,8 @@ struct ScanFacts {
     glm::dvec3 min{0.0}, max{0.0};
     Cube root;  ///< the smallest cube at `min` that contains every point
     std::vector<io::Contents> inputs;
+    /// Stations of inputs that state none; `scan` is the input's index. At most kMostEstimatedStations.
+    std::vector<EstimatedStation> stations;
 
     std::vector<std::byte> save() const;
     static Result<ScanFacts> restore(std::span<const std::byte> record);

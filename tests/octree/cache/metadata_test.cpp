@@ -66,5 +66,41 @@ TEST(Metadata, RejectsImpossibleColoursOfStations) {
     })) << "too many";
 }
 
+SourceHeader with_stations() {
+    SourceHeader header;
+    header.scans.resize(3);
+    header.scans[1].stations = {{1, {1, 2, 3}}};
+    header.estimated_stations = {{0, {1.1, -2, 1e6}}, {0, {0, 0, .1}}, {2, {4, 5, 6}}};
+    return header;
+}
+
+TEST(Metadata, KeepsEstimatedStationsApartFromStatedOnes) {
+    const auto read = parse_metadata("cache.luc", metadata_text(with_stations()));
+    ASSERT_TRUE(read) << read.error().line();
+    EXPECT_EQ(read->estimated_stations, with_stations().estimated_stations);
+    EXPECT_TRUE(read->scans[0].stations.empty());
+    EXPECT_EQ(read->scans[1].stations.size(), 1u);
+    EXPECT_EQ(metadata_text(SourceHeader{}).find("estimated_stations"), std::string::npos);
+}
+
+TEST(Metadata, RejectsImpossibleEstimatedStations) {
+    const auto rejects = [](auto change) {
+        SourceHeader header = with_stations();
+        change(header.estimated_stations);
+        return !parse_metadata("cache.luc", metadata_text(header));
+    };
+    EXPECT_FALSE(rejects([](auto&) {}));
+    for (const double far :
+         {1e32, -1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_TRUE(rejects([far](auto& stations) { stations[1].position.y = far; })) << far;
+    EXPECT_TRUE(rejects([](auto& stations) { stations[2].scan = 3; })) << "there are three";
+    EXPECT_TRUE(rejects([](auto& stations) { stations[1].scan = 1; })) << "it states its own";
+    EXPECT_TRUE(rejects([](auto& stations) { std::swap(stations[0], stations[2]); })) << "not sorted";
+    EXPECT_TRUE(rejects([](auto& stations) { stations.resize(1025, stations[2]); })) << "too many";
+    std::string text = metadata_text(with_stations());
+    text.replace(text.find("\"estimated_stations\": ["), 23, "\"estimated_stations\": 7, \"x\": [");
+    EXPECT_FALSE(parse_metadata("cache.luc", text)) << "no list";
+}
+
 }  // namespace
 }  // namespace lucarne::octree
