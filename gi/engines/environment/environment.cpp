@@ -247,6 +247,7 @@ Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<
         }
         LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer], seed_,
                                              repairs_, frame.stop));
+        if (frame.stopped()) break;
         LUCARNE_ASSIGN(const auto gathered, lighting_.gatherer().shade(lighting_.opencl(), what, repairs_));
         for (size_t i = 0; i < gathered.size(); ++i) {
             const SurfacePoint& at = surfaces[some[i]];
@@ -352,6 +353,7 @@ Result<void> EnvironmentEngine::follow(Frame& frame) {
         while (chosen.size() > kRepairsInMotion) chosen = every(spacing *= 2, frame.camera, lonely);
         LUCARNE_ASSIGN(const auto caches,
                        gather_at(frame, surfaces, chosen, static_cast<float>(spacing), what, light));
+        if (frame.stopped()) return {};
         lonely = interpolate(frame.camera, surfaces, lonely, caches, light);
         kept_.add(caches);
     }

@@ -210,7 +210,7 @@ TEST_F(NewcomerWithAMouse, SeesARoomInEveningLightMeasuresItSavesAPictureAndFind
     ASSERT_TRUE(lamps) << log();
 
     choose("Distance");  // step 3
-    // A click takes no point where a nearer disc covers the point of the one that is seen: one clicks again.
+    // A click takes no point where another surface hides the points of all discs about it: one clicks again.
     int clicks = 0;
     ASSERT_TRUE(eventually([&] {
         if (has_measurement()) return true;
