@@ -111,11 +111,11 @@ bool from_all_around(const std::vector<ScanLine>& lines, const Meeting& meeting)
 
 }  // namespace
 
-FoundStations find_stations(const ScanRuns& runs, double metres_per_unit) {
-    FoundStations found{{}, std::vector<int32_t>(runs.count(), -1)};
+std::vector<glm::dvec3> find_stations(const ScanRuns& runs, double metres_per_unit) {
+    std::vector<glm::dvec3> found;
     const auto lines = scan_lines(runs, metres_per_unit);
     LineMeetings meetings(lines);
-    for (int place = 0; place < kMostPlaces && found.positions.size() < kMostFoundStations; ++place) {
+    for (int place = 0; place < kMostPlaces && found.size() < kMostFoundStations; ++place) {
         const auto meeting = meetings.next();
         if (!meeting) break;
         if (meeting->lines.size() < kLeastLines || !from_all_around(lines, *meeting)) continue;
@@ -123,12 +123,10 @@ FoundStations find_stations(const ScanRuns& runs, double metres_per_unit) {
         const auto beside = [&](const glm::dvec3& station) {
             return metres_per_unit * glm::length(glm::dvec2(station - above)) < kApart;
         };
-        if (std::ranges::any_of(found.positions, beside)) continue;
+        if (std::ranges::any_of(found, beside)) continue;
         const auto height = height_of(profiles(runs, lines, *meeting, metres_per_unit));
         if (!height) continue;
-        for (const uint32_t line : meeting->lines)
-            found.station_of_run[lines[line].run] = static_cast<int32_t>(found.positions.size());
-        found.positions.push_back(above + glm::dvec3(0, 0, *height / metres_per_unit));
+        found.push_back(above + glm::dvec3(0, 0, *height / metres_per_unit));
         meetings.take(*meeting);
     }
     return found;

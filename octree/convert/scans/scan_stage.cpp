@@ -51,7 +51,7 @@ std::string get_text(ByteReader& reader) {
 
 /// Adds the stations that an input's points show.
 void add_stations(ScanFacts& facts, size_t input, const io::ScanInfo& info, const ScanRuns& runs) {
-    for (const glm::dvec3& position : find_stations(runs, info.metres_per_unit).positions)
+    for (const glm::dvec3& position : find_stations(runs, info.metres_per_unit))
         if (facts.stations.size() < kMostEstimatedStations)
             facts.stations.push_back({static_cast<uint32_t>(input), position});
 }

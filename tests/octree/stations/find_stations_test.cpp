@@ -19,7 +19,7 @@ namespace {
 
 struct Searched {
     std::vector<glm::dvec3> stations;  ///< true ones
-    FoundStations found;
+    std::vector<glm::dvec3> found;
 };
 
 Searched searched(const io::SyntheticOptions& options, size_t batch = 65536) {
@@ -39,7 +39,7 @@ Searched searched(const io::SyntheticOptions& options, size_t batch = 65536) {
     return result;
 }
 
-FoundStations found_in(const std::vector<glm::dvec3>& points, double unit = 1) {
+std::vector<glm::dvec3> found_in(const std::vector<glm::dvec3>& points, double unit = 1) {
     io::Schema schema;
     ScanRuns runs;
     runs.add(schema, std::as_bytes(std::span(points)));
@@ -83,23 +83,23 @@ TEST(FindStations, FindsAllStationsOfVirtualScansAndInventsNone) {
     // At 50 000 points a station, 64 points of the nave span a whole profile, so heights are less exact.
     for (const auto& [scene, error] : {std::pair("nave", .3), {"cornell", .1}, {"two-rooms", .1}}) {
         const auto result = searched({.scene = scene, .points = 300'000});
-        EXPECT_EQ(result.found.positions.size(), result.stations.size()) << scene;
-        EXPECT_LT(farthest(result.stations, result.found.positions), error) << scene;
-        EXPECT_LT(farthest(result.found.positions, result.stations), error) << scene;
+        EXPECT_EQ(result.found.size(), result.stations.size()) << scene;
+        EXPECT_LT(farthest(result.stations, result.found), error) << scene;
+        EXPECT_LT(farthest(result.found, result.stations), error) << scene;
     }
 }
 
 TEST(FindStations, FindsTheSameHoweverThePointsComeInBatches) {
     const io::SyntheticOptions options{.scene = "two-rooms", .points = 60'000};
-    EXPECT_EQ(searched(options).found.positions, searched(options, 777).found.positions);
+    EXPECT_EQ(searched(options).found, searched(options, 777).found);
 }
 
 TEST(FindStations, WorksFarFromTheOriginAndInFeet) {
     constexpr double kFoot = .3048;
     const glm::dvec3 far(1.5e6, 2e6, 900);
     const auto found = found_in(room(far, kFoot), kFoot);
-    ASSERT_EQ(found.positions.size(), 1u);
-    EXPECT_LT(kFoot * glm::distance(found.positions[0], far + glm::dvec3(.7, -.4, 1.4) / kFoot), .05);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_LT(kFoot * glm::distance(found[0], far + glm::dvec3(.7, -.4, 1.4) / kFoot), .05);
 }
 
 TEST(FindStations, FindsALeaningScannerOnce) {
@@ -111,24 +111,24 @@ TEST(FindStations, FindsALeaningScannerOnce) {
     const glm::dvec3 station = points.back();
     points.pop_back();
     const auto found = found_in(points);
-    ASSERT_EQ(found.positions.size(), 1u);
-    EXPECT_LT(glm::distance(found.positions[0], station), .2);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_LT(glm::distance(found[0], station), .2);
 }
 
 TEST(FindStations, FindsNoneWhereTheOrderIsLost) {
     auto points = room();
-    ASSERT_EQ(found_in(points).positions.size(), 1u);
+    ASSERT_EQ(found_in(points).size(), 1u);
     for (size_t i = points.size() - 1; i > 0; --i)
         std::swap(points[i], points[Random(7, i).next() % (i + 1)]);
-    EXPECT_TRUE(found_in(points).positions.empty()) << "random order";
+    EXPECT_TRUE(found_in(points).empty()) << "random order";
     std::ranges::sort(points, {}, [](const glm::dvec3& p) { return std::tuple(p.x, p.y, p.z); });
-    EXPECT_TRUE(found_in(points).positions.empty()) << "sorted";
+    EXPECT_TRUE(found_in(points).empty()) << "sorted";
 }
 
 TEST(FindStations, FindsNoneInOtherClouds) {
-    EXPECT_TRUE(searched({.scene = "survey", .points = 300'000}).found.positions.empty()) << "a car's scan";
+    EXPECT_TRUE(searched({.scene = "survey", .points = 300'000}).found.empty()) << "a car's scan";
     for (const char* scene : {"nave", "statue", "primitives", "paraboloid"})
-        EXPECT_TRUE(searched({.scene = scene, .points = 200'000, .even = true}).found.positions.empty())
+        EXPECT_TRUE(searched({.scene = scene, .points = 200'000, .even = true}).found.empty())
             << scene << ", sampled evenly";
     std::vector<glm::dvec3> plane, noise, spokes;
     for (int i = 0; i < 200'000; ++i) {
@@ -138,17 +138,17 @@ TEST(FindStations, FindsNoneInOtherClouds) {
         const double angle = .01 * (i / 200), distance = .02 * (1 + i % 200);
         spokes.emplace_back(distance * std::cos(angle), distance * std::sin(angle), 0);
     }
-    EXPECT_TRUE(found_in(plane).positions.empty()) << "rows of a plane";
-    EXPECT_TRUE(found_in(noise).positions.empty());
-    EXPECT_TRUE(found_in(spokes).positions.empty()) << "evenly spaced along spokes: no scanner's angles";
+    EXPECT_TRUE(found_in(plane).empty()) << "rows of a plane";
+    EXPECT_TRUE(found_in(noise).empty());
+    EXPECT_TRUE(found_in(spokes).empty()) << "evenly spaced along spokes: no scanner's angles";
 }
 
 TEST(FindStations, TakesExtremeCloudsForNoScan) {
-    EXPECT_TRUE(found_in({}).positions.empty());
-    EXPECT_TRUE(found_in(std::vector<glm::dvec3>(100'000, glm::dvec3(3.0))).positions.empty());
+    EXPECT_TRUE(found_in({}).empty());
+    EXPECT_TRUE(found_in(std::vector<glm::dvec3>(100'000, glm::dvec3(3.0))).empty());
     std::vector<glm::dvec3> huge;
     for (const glm::dvec3& point : room()) huge.push_back(1e30 * point);
-    EXPECT_TRUE(found_in(huge).positions.empty());
+    EXPECT_TRUE(found_in(huge).empty());
 }
 
 TEST(ScanRuns, KeepsEvenlySpreadRunsOfAnyNumberOfPoints) {
