@@ -220,7 +220,7 @@ class PointSource {
     /// unreadable; not seekable.
     virtual Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const;
     /// Returns the number of parts whose first points can be read without the points before them: the chunks
-    /// of a LAZ file, the scans of an E57 file. At least 1.
+    /// of a LAZ file, the scans of an E57 file, pieces of a text file. At least 1.
     virtual size_t parts() const { return 1; }
     /// Replaces `batch` by the first points of a part, at most `most`; by fewer if the part has fewer.
     /// Thread-safe. Errors: unreadable.

@@ -193,6 +193,7 @@ ScanFacts GrowingBuild::State::facts_of(const QuickSample& points, const Cube& r
 /// Publishes the sample. Its points that no camera saw, and the gains of its stations, are found as those of
 /// the cache will be.
 void GrowingBuild::State::show_sample(const Cube& root) {
+    header.has_gaps = sample.points.has_gaps;
     LoosePoints points = along_curve(sample, unifier->schema(), schema, root);
     ColourSurvey survey(header);
     if (survey.has_colours()) {

@@ -181,6 +181,7 @@ Result<QuickSample> take_sketch(const Unifier& inputs, uint64_t most, uint64_t r
             continue;
         }
         const auto more = fronts_of(inputs, i, wanted, share_of(inputs, i, sample.points, read));
+        sample.has_gaps = true;
         fronts.insert(fronts.end(), more.begin(), more.end());
     }
     std::vector<Result<std::vector<std::byte>>> taken(fronts.size());

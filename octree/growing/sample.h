@@ -16,6 +16,7 @@ struct QuickSample {
     std::vector<glm::dvec3> positions;
     glm::dvec3 min{0.0}, max{0.0};  ///< bounds of the sample
     uint64_t points = 0;            ///< in the inputs, as far as their headers tell
+    bool has_gaps = false;          ///< only fronts of parts were read
 };
 
 /// Called with the number of points read and their total (0: not known), on any thread. Returning false ends

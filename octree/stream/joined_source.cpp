@@ -101,6 +101,7 @@ class JoinedSource final : public NodeSource {
         header_.min = parts_.empty() ? own.min * part.scale : glm::min(header_.min, own.min * part.scale);
         header_.max = parts_.empty() ? own.max * part.scale : glm::max(header_.max, own.max * part.scale);
         header_.points += own.points;
+        header_.has_gaps |= own.has_gaps;
         header_.scans.insert(header_.scans.end(), own.scans.begin(), own.scans.end());
         parts_.push_back(part);
     }

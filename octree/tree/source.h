@@ -82,6 +82,9 @@ struct SourceHeader {
     /// Set if holes were looked for.
     std::optional<FillingSection> filling;
     std::string options;  ///< how the scans were read where it differs from the default: io::options_text
+    /// Only some places of the scan are known yet, with gaps between them: the first sample of a compressed
+    /// file that is being converted.
+    bool has_gaps = false;
 };
 
 /// The part of a source that a node belongs to; it defines how the node's key and records are read. A source

@@ -15,7 +15,8 @@ constexpr double kDense = 4;
 
 }  // namespace
 
-OccupancyGrid::OccupancyGrid(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box)
+OccupancyGrid::OccupancyGrid(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
+                             double least_cell)
     : low_(box[0]) {
     const glm::dvec3 sides = glm::max(box[1] - box[0], glm::dvec3(0.0));
     const double extent = std::max({sides.x, sides.y, sides.z});
@@ -23,7 +24,9 @@ OccupancyGrid::OccupancyGrid(std::span<const glm::dvec3> points, const std::arra
         cells_.assign(1, 0);
         return;
     }
-    for (int cells = kMostCells; cells >= kLeastCells; cells = cells * 4 / 5) {
+    const double most = least_cell > 0 ? extent / least_cell : kMostCells;
+    const int first = static_cast<int>(std::clamp<double>(most, kLeastCells, kMostCells));
+    for (int cells = first; cells >= kLeastCells; cells = cells * 4 / 5) {
         fill(points, extent, cells, sides);
         if (static_cast<double>(counted_) >= kDense * static_cast<double>(filled_)) break;
     }

@@ -13,8 +13,10 @@ namespace lucarne::viewer {
 class OccupancyGrid {
  public:
     /// Cells are as fine as the density of the points allows, at most kMostCells along the longest side, so
-    /// that walls have no gaps. Points outside the box are ignored.
-    OccupancyGrid(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box);
+    /// that walls have no gaps, and at least `least_cell` large where eight such cells fit along that side.
+    /// Points outside the box are ignored.
+    OccupancyGrid(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
+                  double least_cell = 0);
 
     const glm::ivec3& size() const { return size_; }
     double cell() const { return cell_; }

@@ -18,9 +18,15 @@ constexpr size_t kMostOutline = 5000;
 
 /// Share of the places to stand that are in rooms from which a scan is one of rooms.
 constexpr double kInterior = .5;
+/// Samples of one scan differ by as much in that share.
+constexpr double kUncertain = .1;
 /// Height over width up to which a single layer is terrain, and the share of its columns that are thin.
 constexpr double kFlat = .35, kThinColumns = .8;
 constexpr int kThin = 3;  ///< cells
+/// Metres between the places that are known of a scan with gaps, beyond which it is not said to be one of
+/// rooms. People do not pass through such gaps.
+constexpr double kWidestGap = .5;
+constexpr double kCoarser = 1.25;
 
 struct CoarsePoints {
     std::vector<glm::dvec3> positions;  ///< world units
@@ -91,16 +97,27 @@ std::string_view site_name(SiteKind kind) {
 }
 
 Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
-                 double metres_per_unit) {
+                 double metres_per_unit, bool has_gaps) {
     Site site;
     site.box = box;
     if (!std::isfinite(glm::length(box[0]) + glm::length(box[1])))
         site.box = {glm::dvec3(-1), glm::dvec3(1)};  // an empty cloud: nothing to frame
     site.metres_per_unit = metres_per_unit;
-    const OccupancyGrid grid(points, site.box);
+    OccupancyGrid grid(points, site.box);
+    Standing standing = find_standing_place(grid, metres_per_unit);
+    // Points that lie close together in some places choose cells that are finer than the gaps between the
+    // places, and walls let rays through.
+    const double widest = kWidestGap / metres_per_unit;
+    for (double cell = kCoarser * grid.cell(); has_gaps && cell <= widest; cell *= kCoarser) {
+        OccupancyGrid coarse(points, site.box, cell);
+        Standing there = find_standing_place(coarse, metres_per_unit);
+        if (there.enclosed_share < std::max(kInterior, standing.enclosed_share)) continue;
+        grid = std::move(coarse);
+        standing = std::move(there);
+    }
     site.outline = outline_of(grid, site.box);
-    const Standing standing = find_standing_place(grid, metres_per_unit);
     site.inside = standing.best;
+    site.enclosed_share = standing.enclosed_share;
     if (standing.enclosed_share >= kInterior)
         site.kind = SiteKind::interior;
     else if (is_terrain(grid, site.box))
@@ -111,10 +128,11 @@ Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3
 Site survey_site(const octree::NodeSource& source) {
     const CoarsePoints found = coarse_points(source);
     const auto& points = found.positions;
-    Site site = survey_site(points, octree::robust_bounds(source), source.header().metres_per_unit);
+    const bool has_gaps = source.header().has_gaps;
+    Site site = survey_site(points, octree::robust_bounds(source), source.header().metres_per_unit, has_gaps);
     site.cast = found.cast.result();
     // A source of many nodes is no sketch, even if the coarsest ones have few points.
-    site.sure = points.size() >= kEnoughPoints || source.nodes().size() > kMostNodes;
+    site.sure = !has_gaps && (points.size() >= kEnoughPoints || source.nodes().size() > kMostNodes);
     return site;
 }
 
@@ -122,7 +140,11 @@ bool alike(const Site& a, const Site& b) {
     constexpr double kSame = .05;  // of the diagonal
     const double size = std::max(glm::distance(a.box[0], a.box[1]), glm::distance(b.box[0], b.box[1]));
     const double moved = std::max(glm::distance(a.box[0], b.box[0]), glm::distance(a.box[1], b.box[1]));
-    return a.kind == b.kind && a.inside.has_value() == b.inside.has_value() && moved <= kSame * size;
+    const auto between = [](const Site& site) {
+        return std::abs(site.enclosed_share - kInterior) <= kUncertain;
+    };
+    const bool same_kind = a.kind == b.kind || (between(a) && between(b));
+    return same_kind && a.inside.has_value() == b.inside.has_value() && moved <= kSame * size;
 }
 
 }  // namespace lucarne::viewer

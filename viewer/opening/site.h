@@ -42,6 +42,7 @@ struct StandingPlace {
 /// What is known about a scan before it is shown.
 struct Site {
     SiteKind kind = SiteKind::object;
+    double enclosed_share = 0;        ///< of the places to stand, those in rooms
     std::array<glm::dvec3, 2> box{};  ///< robust bounds
     double metres_per_unit = 1;
     glm::dvec3 cast{1.0};  ///< colour of the light in which the scan was photographed, linear, luminance 1
@@ -57,12 +58,13 @@ Site survey_site(const octree::NodeSource& source);
 /// Points from which a site is sure.
 inline constexpr size_t kEnoughPoints = 100'000;
 
-/// The same for points that are known already, in a box (world units).
+/// The same for points that are known already, in a box (world units). `has_gaps`: as of SourceHeader.
 Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
-                 double metres_per_unit);
+                 double metres_per_unit, bool has_gaps = false);
 
-/// Returns whether two sites are of one kind and their boxes differ by less than a twentieth, as those of a
-/// sample and of more points of the same scan do: views and light made for one suit the other.
+/// Returns whether two sites are of one kind, or between two kinds, and their boxes differ by less than a
+/// twentieth, as those of a sample and of more points of the same scan do: views and light made for one suit
+/// the other.
 bool alike(const Site& a, const Site& b);
 
 }  // namespace lucarne::viewer

@@ -14,6 +14,7 @@
 #include "io/formats/pcd/layout.h"
 #include "io/formats/pcd/lzf.h"
 #include "io/formats/pcd/writer.h"
+#include "io/formats/text/row_fronts.h"
 
 namespace lucarne::io {
 namespace {
@@ -171,6 +172,13 @@ class PcdSource final : public PointSource {
                 break;
         }
         return std::make_unique<CompressedReader>(file_, header_, layout_.binary, compressed_);
+    }
+    size_t parts() const override {
+        return header_.encoding == Encoding::ascii ? text::row_parts(sections_) : 1;
+    }
+    Result<void> front(size_t part, size_t most, PointBatch& batch) const override {
+        if (header_.encoding != Encoding::ascii) return PointSource::front(part, most, batch);
+        return text::read_row_front(*file_, sections_, part, most, batch);
     }
     bool seekable() const override { return header_.encoding == Encoding::binary; }
     Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {

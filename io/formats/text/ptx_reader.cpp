@@ -9,6 +9,7 @@
 #include "io/formats/common/format.h"
 #include "io/formats/common/value_range.h"
 #include "io/formats/text/ptx_scans.h"
+#include "io/formats/text/row_fronts.h"
 #include "io/formats/text/sample.h"
 
 namespace lucarne::io {
@@ -48,6 +49,10 @@ class PtxSource final : public PointSource {
     const Schema& schema() const override { return schema_; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override { return read_rows(file_, sections_); }
+    size_t parts() const override { return row_parts(sections_); }
+    Result<void> front(size_t part, size_t most, PointBatch& batch) const override {
+        return read_row_front(*file_, sections_, part, most, batch);
+    }
 
  private:
     Section section_of(const Scan& scan, uint32_t id, char line_end) const {

@@ -10,7 +10,7 @@
 #include "io/formats/common/text.h"
 #include "io/formats/common/value_range.h"
 #include "io/formats/text/columns.h"
-#include "io/formats/text/rows.h"
+#include "io/formats/text/row_fronts.h"
 #include "io/formats/text/sample.h"
 #include "io/formats/text/writer.h"
 
@@ -76,6 +76,10 @@ class TextSource final : public PointSource {
     const Schema& schema() const override { return sections_[0].layout.schema; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override { return read_rows(file_, sections_); }
+    size_t parts() const override { return row_parts(sections_); }
+    Result<void> front(size_t part, size_t most, PointBatch& batch) const override {
+        return read_row_front(*file_, sections_, part, most, batch);
+    }
 
  private:
     Result<void> refuse(std::string why, std::string todo = {}) const {

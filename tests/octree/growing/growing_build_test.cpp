@@ -374,6 +374,7 @@ TEST(GrowingBuild, ItsSampleGrowsWhileTheBuildReads) {
     ASSERT_TRUE(build) << build.error().line();
     std::vector<uint64_t> points = {(*build)->state().source->nodes()[0].subtree_count};
     EXPECT_EQ(points.front(), 5'000u);
+    EXPECT_TRUE((*build)->state().source->header().has_gaps) << "only the file's front was read";
     bool told = false;
     (*build)->begin([&] {
         const auto source = (*build)->state().source;
@@ -383,6 +384,7 @@ TEST(GrowingBuild, ItsSampleGrowsWhileTheBuildReads) {
     });
     (*build)->wait();
     EXPECT_TRUE((*build)->state().finished);
+    EXPECT_FALSE((*build)->state().source->header().has_gaps);
     EXPECT_TRUE(std::is_sorted(points.begin(), points.end())) << "a later source has fewer points";
     EXPECT_THAT(std::set<uint64_t>(points.begin(), points.end()),
                 ::testing::IsSupersetOf({5'000u, 10'000u, 20'000u, 40'000u, unsigned{kPoints}}));

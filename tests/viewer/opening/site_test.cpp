@@ -8,6 +8,10 @@
 
 #include "gi/scene/photometry.h"
 #include "gi/scene/scene_lights.h"
+#include "io/core/random.h"
+#include "io/formats/scan.h"
+#include "octree/growing/growing_build.h"
+#include "tests/octree/test_sources.h"
 #include "viewer/opening/first_view.h"
 #include "viewer/opening/moods.h"
 #include "viewer/opening/occupancy.h"
@@ -145,6 +149,79 @@ TEST(Site, IsAlikeIfMorePointsOfTheSameScanAreSeen) {
     Site other = more;
     other.kind = SiteKind::object;
     EXPECT_FALSE(alike(few, other));
+}
+
+TEST(Site, IsAlikeIfTheSampleDecidesBetweenTwoKinds) {
+    Site inside = room(), outside = inside;
+    inside.enclosed_share = .52;
+    outside.enclosed_share = .47;
+    outside.kind = SiteKind::object;
+    EXPECT_TRUE(alike(inside, outside));
+    EXPECT_TRUE(alike(outside, inside));
+    outside.enclosed_share = .3;
+    EXPECT_FALSE(alike(inside, outside));
+}
+
+/// Points in some places of a cloud, as the fronts of a compressed file's chunks are: of cubes of `size`,
+/// every `every`-th has points.
+std::vector<dvec3> some_places(const std::vector<dvec3>& points, double size, uint64_t every) {
+    std::vector<dvec3> some;
+    for (const dvec3& p : points) {
+        uint64_t cube = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            cube = mix64(cube, static_cast<uint64_t>(static_cast<int64_t>(std::floor(p[axis] / size))));
+        if (cube % every == 0) some.push_back(p);
+    }
+    return some;
+}
+
+TEST(Site, ARoomIsKnownFromSomePlacesOfItsWalls) {
+    std::vector<dvec3> points;
+    add_faces(points, kRoom, 200000, true, 3);
+    for (const double size : {.15, .25, .4}) {
+        const std::vector<dvec3> some = some_places(points, size, 2);
+        const Site site = survey_site(some, kRoom, 1, true);
+        EXPECT_EQ(site.kind, SiteKind::interior) << size;
+        EXPECT_TRUE(alike(site, room())) << size;
+    }
+    EXPECT_NE(survey_site(some_places(points, .4, 2), kRoom, 1).kind, SiteKind::interior)
+        << "the same points without a word of gaps: the walls are open";
+}
+
+/// Two rooms of real scans as the window opens them: what their first 60 000 points show.
+TEST(Site, RealRoomsAreKnownFromTheFirstPointsOfACompressedFile) {
+    const auto data = io::testing::shared_data();
+    for (const char* name : {"loft.laz", "vault.laz"}) {
+        if (data.empty() || !std::filesystem::exists(data / "interiors" / name))
+            GTEST_SKIP() << "no shared " << name;
+        const test::TempFolder folder;
+        auto scan = io::open_scan(data / "interiors" / name);
+        ASSERT_TRUE(scan) << scan.error().line();
+        octree::GrowingBuild::Inputs inputs;
+        inputs.push_back(std::move(*scan));
+        octree::GrowingOptions options;
+        options.build.output = folder / "a.luc";
+        options.sample_points = 400'000;
+        options.first_points = 60'000;
+        options.first_read = 500'000;
+        const auto build = octree::GrowingBuild::open(std::move(inputs), options);
+        ASSERT_TRUE(build) << build.error().line();
+        const auto source = (*build)->state().source;
+        EXPECT_TRUE(source->header().has_gaps);
+        const Site site = survey_site(*source);
+        EXPECT_EQ(site.kind, SiteKind::interior) << name << ": " << site.enclosed_share;
+        EXPECT_FALSE(site.sure) << "the even points that follow may show something else";
+    }
+}
+
+TEST(Site, GapsMakeNoRoomsOfWhatIsOutside) {
+    std::vector<dvec3> points;
+    const Box house = {dvec3(0, 0, 0), dvec3(12, 9, 4)};
+    add_faces(points, house, 100000, false, 3);
+    EXPECT_NE(survey_site(some_places(points, .3, 2), house, 1, true).kind, SiteKind::interior)
+        << "no ceiling";
+    const Box hills{dvec3(0, 0, -20), dvec3(400, 400, 20)};
+    EXPECT_EQ(survey_site(some_places(terrain(100000), 4, 2), hills, 1, true).kind, SiteKind::terrain);
 }
 
 TEST(FirstView, AllPointsFillTheFreePartOfThePicture) {
