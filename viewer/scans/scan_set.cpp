@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -16,15 +17,21 @@ namespace {
 
 using Source = std::shared_ptr<const octree::NodeSource>;
 
-constexpr uint64_t kSamplePoints = 400'000;      ///< for all scans that are opened at once
-constexpr uint64_t kFirstPoints = 60'000;        ///< of these, for the first picture
-constexpr uint64_t kFirstRead = 500'000;         ///< points that are read for it where files cannot seek
+constexpr uint64_t kSamplePoints = 400'000;  ///< for all scans that are opened at once
+constexpr uint64_t kFirstPoints = 60'000;    ///< of these, for the first picture
+/// Points that are read for it where files cannot seek, for each core: some .2 s of decoding LAZ.
+constexpr uint64_t kFirstReadPerCore = 250'000;
 constexpr uint64_t kReadPoints = 4'000'000;      ///< shown of the scan that is being converted
 constexpr uint64_t kLeastSamplePoints = 20'000;  ///< for one scan
 /// Each scan keeps one or two files open, and a process may have 1024.
 constexpr size_t kMostScans = 400;
 constexpr std::chrono::seconds kBetweenLooks(1);  ///< for caches that other programs have finished
 constexpr auto kNoTime = std::filesystem::file_time_type::min();  ///< of a file that is not there
+
+/// Returns how many points all cores read for the first picture: 500 000 to 4 million.
+uint64_t first_read() {
+    return kFirstReadPerCore * std::clamp(std::thread::hardware_concurrency(), 2u, 16u);
+}
 
 /// State shared between the window and the thread that opens a scan.
 struct Watch {
@@ -128,7 +135,7 @@ Result<Opened> open_paths(const InputOptions& how, bool together, Watch& watch, 
     opening.resumable = true;
     opening.sample_points = sample_points;
     opening.first_points = sample_points * kFirstPoints / kSamplePoints;
-    opening.first_read = sample_points * kFirstRead / kSamplePoints;
+    opening.first_read = sample_points * first_read() / kSamplePoints;
     opening.read_points = kReadPoints;
     opening.sampling = [&watch](uint64_t done, uint64_t total) {
         watch.share = total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;

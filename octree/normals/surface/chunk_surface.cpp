@@ -173,7 +173,8 @@ class SiteEstimator {
         connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, side ? whole : fit.normal);
         if (!(fit.deviation < kPoorDeviation)) {
             // A blob has no disc. An outlier must not get the area of the empty space around it.
-            surface_.areas[site] = std::min(spacing * spacing, share_of_neighbours(nearest));
+            surface_.areas[site] =
+                std::min({spacing * spacing, share_of_neighbours(nearest), lone_area(nearest.distance2[1])});
             return 0;
         }
         if (patch != &window_) seen = reach;  // at least
@@ -200,9 +201,11 @@ class SiteEstimator {
         }
         const bool wide = area > kWide * spacing * spacing;
         if (wide || apart || sparser > kThin) {
-            const double look = kEarnedLook * surfel_radius(area, 0);
+            // What crowds a site may be farther away than its disc reaches.
+            const double look = std::max(double{kEarnedLook * surfel_radius(area, 0)},
+                                         crowding > kCrowded ? kWindow * reach : 0.0);
             if (!around.knows(look)) return look;
-            const float earned = earned_at(around, fit.normal, area);
+            const float earned = earned_at(around, look, fit.normal, area);
             if (apart && earned < area) return leave_out(site);
             area = std::min(area, earned);
             if (wide && !apart) area = std::min(area, most_beside(nearest, area));
@@ -242,11 +245,12 @@ class SiteEstimator {
                                  steps_.begin() + static_cast<ptrdiff_t>(last + 1));
     }
 
-    /// The largest share that a site of a share has earned; infinity: any.
-    float earned_at(ChunkNeighbours::Surroundings& around, const glm::vec3& normal, float area) {
-        const WideDisc disc{normal, surfel_radius(area, 0)};
-        const auto view = around.around(kEarnedLook * disc.radius);
-        return earned_area(view.tile, view.centre, static_cast<float>(view.radius), disc);
+    /// The largest share that a site of a share has earned, judged by the points within `look`; infinity:
+    /// any.
+    float earned_at(ChunkNeighbours::Surroundings& around, double look, const glm::vec3& normal, float area) {
+        const auto view = around.around(look);
+        return earned_area(view.tile, view.centre, static_cast<float>(std::min(look, view.radius)),
+                           {normal, surfel_radius(area, 0)});
     }
 
     /// The largest share of a site beside its neighbours: a point in the air has a wide cell although they

@@ -20,11 +20,18 @@ constexpr float kInRadii = 0.08f;
 /// as those around them, most of those in the air have a share below .3, and those on walls over .7. In a
 /// corner between walls of one density it is .5.
 constexpr float kLeastFlat = 0.45f;
+/// Where there is no crowd, points up to so many radii of the disc over its plane lie in it, and least share
+/// of them: the points of a sheet with noise do; of points that are scattered in all directions, .19 do.
+constexpr float kNearRadii = 0.25f, kLeastNear = 0.5f;
+/// Fewer points around a disc say nothing.
+constexpr size_t kFewestScattered = 8;
 /// A crowd beside the disc may be another surface, such as a dense floor below a sparse wall. Then the disc's
-/// own surface goes on away from it: this share of the points there, and at least so many, lie in its plane.
-/// A sheet has 14 on one side.
-constexpr float kLeastAway = 0.7f;
+/// own surface goes on away from it: this share of the points there lie in its plane, and at least so many of
+/// those that a sheet has on one side.
+constexpr float kLeastAway = 0.7f, kLeastOfSheet = 0.5f;
 constexpr size_t kFewestAway = 5;
+/// The disc of a point that has not earned its size reaches so far toward the nearest other point.
+constexpr float kLoneReach = 0.5f;
 
 /// Counts the points of a crowd.
 struct Count {
@@ -34,33 +41,47 @@ struct Count {
 
 }  // namespace
 
-float earned_area(const Tile& around, const glm::vec3& centre, float known, const WideDisc& disc) {
-    const float look2 = std::min(known * known, kEarnedLook * kEarnedLook * disc.radius * disc.radius);
+float lone_area(float nearest2) {
+    return std::numbers::pi_v<float> / kCoverageRaw * nearest2;
+}
+
+float earned_area(const Tile& around, const glm::vec3& centre, float look, const WideDisc& disc) {
+    const float look2 = look * look;
     const float level = kInRadii * disc.radius;
     const auto each = [&](const auto& use) {
         for (size_t i = 0; i < around.count; ++i) {
             const glm::vec3 p = glm::vec3(around.x[i], around.y[i], around.z[i]) - centre;
-            if (glm::dot(p, p) <= look2) use(p, std::abs(glm::dot(p, disc.normal)) <= level);
+            if (glm::dot(p, p) <= look2) use(p, std::abs(glm::dot(p, disc.normal)));
         }
     };
-    Count crowd, away;
+    Count crowd, near, away;
     glm::vec3 sum(0.0f);
-    each([&](const glm::vec3& p, bool flat) {
+    constexpr float kAny = std::numeric_limits<float>::infinity();
+    float nearest2 = kAny;
+    each([&](const glm::vec3& p, float height) {
         ++crowd.all;
-        crowd.flat += flat;
+        crowd.flat += height <= level;
+        near.flat += height <= kNearRadii * disc.radius;
         sum += p;
+        const float distance2 = glm::dot(p, p);
+        if (distance2 > 0) nearest2 = std::min(nearest2, distance2);
     });
+    near.all = crowd.all;
     const auto points = static_cast<float>(crowd.all);
     const float sheet = kCoverageRaw * look2 / (disc.radius * disc.radius);
-    constexpr float kAny = std::numeric_limits<float>::infinity();
-    if (points < kCrowd * sheet || crowd.share() >= kLeastFlat) return kAny;
-    each([&](const glm::vec3& p, bool flat) {
+    const float alone = lone_area(kLoneReach * kLoneReach * nearest2);
+    if (points < kCrowd * sheet)
+        return crowd.all >= kFewestScattered && near.share() < kLeastNear ? alone : kAny;
+    if (crowd.share() >= kLeastFlat) return kAny;
+    each([&](const glm::vec3& p, float height) {
         if (glm::dot(p, sum) >= 0) return;
         ++away.all;
-        away.flat += flat;
+        away.flat += height <= level;
     });
-    if (away.flat >= kFewestAway && away.share() >= kLeastAway) return kAny;
-    return std::numbers::pi_v<float> * look2 / points;
+    const bool goes_on =
+        away.flat >= kFewestAway && static_cast<float>(away.flat) >= kLeastOfSheet * sheet / 2;
+    if (goes_on && away.share() >= kLeastAway) return kAny;
+    return std::min(alone, std::numbers::pi_v<float> * look2 / points);
 }
 
 }  // namespace lucarne::octree

@@ -15,12 +15,18 @@ struct WideDisc {
 /// How far around a disc its surroundings are looked at, in its radii.
 inline constexpr float kEarnedLook = 2.0f;
 
+/// Returns the share of a point whose disc reaches as far as the nearest other point, at a squared distance
+/// of `nearest2`: the largest of a point without a surface, such as that of a leaf.
+float lone_area(float nearest2);
+
 /// Returns the largest share of the surface that a disc has earned; infinity: any. A disc in a crowd, of many
 /// more points than a sheet of discs of its size has there, must lie in the plane of nearly half of them. A
 /// sparse point that continues a dense wall does, even in a corner of it. A mixed pixel or a lone point of a
 /// wire before dense walls does not, although its own few neighbours have some plane; it gets the share that
-/// the points of the crowd have on average. `around`: all points within kEarnedLook radii of the disc's
-/// centre (relative to the tile's origin), or within `known` if that is less.
-float earned_area(const Tile& around, const glm::vec3& centre, float known, const WideDisc& disc);
+/// the points of the crowd have on average, but its disc reaches at most half-way to the nearest point.
+/// Without a crowd, half of the points around must lie near the disc's plane; else they are scattered in the
+/// air, and the same holds. `centre` is relative to the tile's origin. `around`: all points within `look`,
+/// usually kEarnedLook radii, of it.
+float earned_area(const Tile& around, const glm::vec3& centre, float look, const WideDisc& disc);
 
 }  // namespace lucarne::octree
