@@ -173,8 +173,8 @@ class SiteEstimator {
         connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, side ? whole : fit.normal);
         if (!(fit.deviation < kPoorDeviation)) {
             // A blob has no disc. An outlier must not get the area of the empty space around it.
-            surface_.areas[site] =
-                std::min({spacing * spacing, share_of_neighbours(nearest), lone_area(nearest.distance2[1])});
+            const float most = sparser > kThin ? lone_area(nearest.distance2[1]) : spacing * spacing;
+            surface_.areas[site] = std::min({most, spacing * spacing, share_of_neighbours(nearest)});
             return 0;
         }
         if (patch != &window_) seen = reach;  // at least
@@ -205,7 +205,7 @@ class SiteEstimator {
             const double look = std::max(double{kEarnedLook * surfel_radius(area, 0)},
                                          crowding > kCrowded ? kWindow * reach : 0.0);
             if (!around.knows(look)) return look;
-            const float earned = earned_at(around, look, fit.normal, area);
+            const float earned = earned_at(around, look, fit.normal, area, sparser > kThin);
             if (apart && earned < area) return leave_out(site);
             area = std::min(area, earned);
             if (wide && !apart) area = std::min(area, most_beside(nearest, area));
@@ -247,10 +247,11 @@ class SiteEstimator {
 
     /// The largest share that a site of a share has earned, judged by the points within `look`; infinity:
     /// any.
-    float earned_at(ChunkNeighbours::Surroundings& around, double look, const glm::vec3& normal, float area) {
+    float earned_at(ChunkNeighbours::Surroundings& around, double look, const glm::vec3& normal, float area,
+                    bool sparse) {
         const auto view = around.around(look);
         return earned_area(view.tile, view.centre, static_cast<float>(std::min(look, view.radius)),
-                           {normal, surfel_radius(area, 0)});
+                           {normal, surfel_radius(area, 0), sparse});
     }
 
     /// The largest share of a site beside its neighbours: a point in the air has a wide cell although they

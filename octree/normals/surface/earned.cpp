@@ -20,9 +20,10 @@ constexpr float kInRadii = 0.08f;
 /// as those around them, most of those in the air have a share below .3, and those on walls over .7. In a
 /// corner between walls of one density it is .5.
 constexpr float kLeastFlat = 0.45f;
-/// Where there is no crowd, points up to so many radii of the disc over its plane lie in it, and least share
-/// of them: the points of a sheet with noise do; of points that are scattered in all directions, .19 do.
-constexpr float kNearRadii = 0.25f, kLeastNear = 0.5f;
+/// Around a sparse disc without a crowd, points up to so many radii of the disc over its plane lie in it, and
+/// least share of them: the points of a sheet with noise do, and .4 at the corner of a box; of points that
+/// are scattered in all directions, .19 do.
+constexpr float kNearRadii = 0.25f, kLeastNear = 0.3f;
 /// Fewer points around a disc say nothing.
 constexpr size_t kFewestScattered = 8;
 /// A crowd beside the disc may be another surface, such as a dense floor below a sparse wall. Then the disc's
@@ -69,7 +70,7 @@ float earned_area(const Tile& around, const glm::vec3& centre, float look, const
     near.all = crowd.all;
     const auto points = static_cast<float>(crowd.all);
     const float sheet = kCoverageRaw * look2 / (disc.radius * disc.radius);
-    const float alone = lone_area(kLoneReach * kLoneReach * nearest2);
+    const float alone = disc.sparse ? lone_area(kLoneReach * kLoneReach * nearest2) : kAny;
     if (points < kCrowd * sheet)
         return crowd.all >= kFewestScattered && near.share() < kLeastNear ? alone : kAny;
     if (crowd.share() >= kLeastFlat) return kAny;

@@ -10,6 +10,7 @@ namespace lucarne::octree {
 struct WideDisc {
     glm::vec3 normal{0.0f};  ///< unit
     float radius = 0;        ///< with which it is drawn
+    bool sparse = false;     ///< the surface nearby is far denser
 };
 
 /// How far around a disc its surroundings are looked at, in its radii.
@@ -24,9 +25,9 @@ float lone_area(float nearest2);
 /// sparse point that continues a dense wall does, even in a corner of it. A mixed pixel or a lone point of a
 /// wire before dense walls does not, although its own few neighbours have some plane; it gets the share that
 /// the points of the crowd have on average, but its disc reaches at most half-way to the nearest point.
-/// Without a crowd, half of the points around must lie near the disc's plane; else they are scattered in the
-/// air, and the same holds. `centre` is relative to the tile's origin. `around`: all points within `look`,
-/// usually kEarnedLook radii, of it.
+/// Around a sparse disc without a crowd, .3 of the points must lie near its plane; else they are scattered in
+/// the air, and the same holds. `centre` is relative to the tile's origin. `around`: all points within
+/// `look`, usually kEarnedLook radii, of it.
 float earned_area(const Tile& around, const glm::vec3& centre, float look, const WideDisc& disc);
 
 }  // namespace lucarne::octree
