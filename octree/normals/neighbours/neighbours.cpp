@@ -206,7 +206,7 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<Pending> pending, size_t
         parallel_ranges(pending.size(), kGroups * kGroupSites / 4, [&](size_t first, size_t last) {
             std::vector<uint32_t> sites;
             std::vector<Pending> out;
-            Surroundings around(*this, last_try ? kInfinity : radius);
+            Surroundings around(*this, last_try ? kInfinity : radius, complete ? radius : 0.0);
             for (size_t i = first; i < last;) {
                 sites.clear();
                 for (; i < last && sites.size() < kGroupSites &&

@@ -91,13 +91,19 @@ class ChunkNeighbours {
 class ChunkNeighbours::Surroundings {
  public:
     /// `halo`: the radius within which the halo holds all points; 0: no halo yet.
-    Surroundings(const ChunkNeighbours& neighbours, double halo) : of_(neighbours), halo_(halo) {}
+    Surroundings(const ChunkNeighbours& neighbours, double halo)
+        : Surroundings(neighbours, halo, halo) {}
+    /// The same, where the search is given up: `halo` is taken for known, and only `certain` is.
+    Surroundings(const ChunkNeighbours& neighbours, double halo, double certain)
+        : of_(neighbours), halo_(halo), certain_(certain) {}
 
     /// Starts a group of sites. Estimates how far their neighbours may be.
     void begin(std::span<const uint32_t> sites, size_t k);
     /// Goes to a site and finds its `k` nearest among the known sites, itself included.
     const Patch& visit(uint32_t site, size_t k);
 
+    /// The radius within which all points are known even where the search was given up.
+    double certain() const { return certain_; }
     /// Whether all points nearer than `radius` are known (or no more can be).
     bool knows(double radius) const;
     /// A superset of the points within a radius of the site, in no particular order.
@@ -125,7 +131,7 @@ class ChunkNeighbours::Surroundings {
     bool find_wide(size_t k, Patch& patch);
 
     const ChunkNeighbours& of_;
-    double halo_;
+    double halo_, certain_;
     Box box_{};             ///< bounds of the group's sites
     Gathered near_, wide_;  ///< gathered around all sites of the group
     Gathered own_;          ///< gathered around the visited site alone

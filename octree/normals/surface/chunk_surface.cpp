@@ -224,6 +224,12 @@ class SiteEstimator {
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
         return 0;
     }
+    /// Decides about a site whose neighbours are not all known, only those within `certain`. It stays without
+    /// a surface, and is an outlier if those that are known say so and it is far from all others.
+    void give_up(uint32_t site, const Patch& known, double certain) {
+        if (known.count < usual_ || certain < kSparse * step_near(site)) return;
+        if (is_stray(known, usual_, true)) leave_out(site);
+    }
     std::span<const uint32_t> apart() const { return apart_; }
     std::span<const SideNormal> sides() const { return sides_; }
     std::span<const SiteLine> lines() const { return lines_; }
@@ -404,7 +410,9 @@ Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, size_t k) {
         [&] { return SiteEstimator(neighbours, k + 1, steps, surface); });
     LUCARNE_TRY(neighbours.search(
         k + 1, [&](uint32_t site, const Patch& nearest, bool exact, ChunkNeighbours::Surroundings& around) {
-            return exact ? estimators.local().visit(site, nearest, around) : 0.0;
+            if (exact) return estimators.local().visit(site, nearest, around);
+            estimators.local().give_up(site, nearest, around.certain());
+            return 0.0;
         }));
     for (const auto& estimator : estimators) {
         surface.apart.insert(surface.apart.end(), estimator.apart().begin(), estimator.apart().end());
