@@ -1,5 +1,5 @@
-// An engine that consists of one folder and one line in the list of engines. Its options appear on the
-// command line, in scene files, presets, reports and the window without further code.
+// An engine that consists of one folder and one line in the list of engines. All commands have it, and its
+// options appear on the command line, in scene files, presets, reports and the window without further code.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -44,13 +44,34 @@ TEST_F(AddedEngine, TakesItsOptionsFromTheCommandLine) {
     EXPECT_EQ(brightest({"--tint", "0.25,0.5,1", "--paint-gain", "2"}), glm::vec3(0.5f, 1, 2));
     EXPECT_EQ(brightest({"--tint", "0,0,0.5", "--pattern", "stripes", "--stripe-width", "64"}),
               glm::vec3(0, 0, 0.5f));
-    testing::internal::CaptureStdout();
-    EXPECT_TRUE(run({"render", "--help"}));
-    const std::string help = testing::internal::GetCapturedStdout();
-    EXPECT_THAT(help, HasSubstr("--tint R,G,B"));
-    EXPECT_THAT(help, HasSubstr("paint: Pixels of a stripe (1 to 64)"));
-    EXPECT_THAT(help, HasSubstr("plain, stripes"));
-    EXPECT_THAT(help, HasSubstr("--paint-sky"));
+}
+
+TEST_F(AddedEngine, StandsInTheHelpOfAllCommandsThatDraw) {
+    for (const char* command : {"render", "view", "fly", "prepare"}) {
+        testing::internal::CaptureStdout();
+        EXPECT_TRUE(run({command, "--help"}));
+        const std::string help = testing::internal::GetCapturedStdout();
+        for (const char* text :
+             {"paint        one colour", "--tint R,G,B", "paint: Pixels of a stripe (1 to 64)",
+              "plain, stripes, grey, mean", "--paint-sky", "--mean-scale"})
+            EXPECT_THAT(help, HasSubstr(text)) << command;
+    }
+}
+
+TEST_F(AddedEngine, FliesWithTheNodesOfTheViewAlone) {
+    std::ofstream(folder_ / "path.json") << R"({"frames_per_second": 2, "keys": [
+        {"time": 0, "position": [2.7, 0.4, 2.7], "target": [2.7, 5, 2.4]},
+        {"time": 1, "position": [1.5, 0.8, 3.5], "target": [3, 4, 1.5]}]})";
+    const auto flown = run({"fly", cache_, "--path", folder_ / "path.json", "-o", folder_ / "report.json",
+                            "--engine", "paint", "--tint", "0,0,1", "--wait", "--size", "64x48"});
+    ASSERT_TRUE(flown) << flown.error().line();
+    const auto report = nlohmann::json::parse(test::bytes_of(folder_ / "report.json"));
+    EXPECT_EQ(report["engine"], "paint");
+    EXPECT_EQ(report["settings"]["tint"], (nlohmann::json{0.0, 0.0, 1.0}));
+    EXPECT_GT(report["points_per_frame"]["view"]["mean"], 1000);
+    EXPECT_EQ(report["points_per_frame"]["light"]["mean"], 0);
+    EXPECT_TRUE(report["passes_ms"].contains("bands"));
+    EXPECT_TRUE(std::filesystem::exists(cache_ + ".paint.bake"));
 }
 
 TEST_F(AddedEngine, RejectsWrongValuesBeforeAnythingIsDone) {
@@ -71,7 +92,7 @@ TEST_F(AddedEngine, RejectsWrongValuesBeforeAnythingIsDone) {
 
 TEST_F(AddedEngine, TakesItsOptionsFromSceneFilesAndWritesThem) {
     const std::string render =
-        R"({"engine": "paint", "tint": [0.5, 0, 0], "paint_gain": 4, "stripe_width": 2, "pattern": "plain", "paint_sky": true})";
+        R"({"engine": "paint", "tint": [0.5, 0, 0], "paint_gain": 4, "stripe_width": 2, "pattern": "plain", "paint_sky": true, "mean_scale": 2})";
     EXPECT_EQ(brightest({"--scene", scene(render)}), glm::vec3(2, 0, 0));
     EXPECT_EQ(brightest({"--scene", scene(render), "--paint-gain", "1"}), glm::vec3(0.5f, 0, 0))
         << "options win";
@@ -95,6 +116,7 @@ TEST_F(AddedEngine, StandsInReports) {
     EXPECT_EQ(report["settings"]["tint"], (nlohmann::ordered_json{0.0, 0.0, 1.0}));
     EXPECT_EQ(report["settings"]["stripe_width"], 2);
     EXPECT_EQ(report["settings"]["pattern"], "plain");
+    EXPECT_EQ(report["settings"]["mean_scale"], 1.0);
     EXPECT_FALSE(report["settings"].contains("vpls"));
 }
 
@@ -133,7 +155,7 @@ class Panel {
     }
 };
 
-TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
+TEST(AddedEnginePanel, HasAControlForEachOfItsOptions) {
     std::set<std::string> changed;
     const auto look = [&](const ViewModel& model, const gi::EngineSettings& before) {
         for (const gi::OptionInfo* option : gi::engine_options())
@@ -154,7 +176,7 @@ TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
                 look(model, before);
         }
     }
-    for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky"})
+    for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky", "mean_scale"})
         EXPECT_THAT(changed, Contains(key));
     EXPECT_FALSE(changed.contains("vpls")) << "another engine's";
 }

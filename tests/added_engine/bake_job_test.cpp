@@ -12,7 +12,8 @@
 #include "io/files/file.h"
 #include "octree/stream/cut.h"
 #include "octree/tree/robust_bounds.h"
-#include "tests/added_engine/mean/mean.h"
+#include "tests/added_engine/paint/mean_colour.h"
+#include "tests/added_engine/paint/paint.h"
 #include "tests/viewer/frame/on_worker.h"
 #include "viewer/inputs/input.h"
 
@@ -23,12 +24,12 @@ class BakeJobTest : public test::OnWorker {
  protected:
     void SetUp() override {
         cache_ = test::make_cornell(folder_, "20k");
-        place_ = cache_ + ".mean.bake";
-        gi::mean_hooks().steps = 0;
+        place_ = cache_ + ".paint.bake";
+        gi::paint_hooks().steps = 0;
     }
     void TearDown() override {
         worker_.reset();
-        gi::mean_hooks().before = nullptr;
+        gi::paint_hooks().before = nullptr;
     }
     /// Computes all of it and keeps it.
     void compute() {
@@ -47,7 +48,7 @@ class BakeJobTest : public test::OnWorker {
         const glm::dvec3 middle = (bounds[0] + bounds[1]) / 2.0;
         const gi::Scene scene = gi::default_scene(bounds[0], bounds[1]);
         gi::BakeOrder made{
-            .engine = &(*gi::find_engine("mean"))->info,
+            .engine = &(*gi::find_engine("paint"))->info,
             .source = source,
             .preparation = std::make_shared<const gi::SurfelPreparation>(source, scene),
             .cut = octree::light_cut(*source, middle, find_preset(kDefaultPreset)->budgets.light, {},
@@ -60,7 +61,7 @@ class BakeJobTest : public test::OnWorker {
     }
     /// Holds the job before a step until release() is called.
     void hold_before(uint32_t step) {
-        gi::mean_hooks().before = [this, step](uint32_t number) {
+        gi::paint_hooks().before = [this, step](uint32_t number) {
             if (number != step) return;
             reached_.release();
             go_on_.acquire();
@@ -83,18 +84,18 @@ TEST_F(BakeJobTest, ACancelledOneIsContinuedAsIfItHadNeverBeenStopped) {
     EXPECT_TRUE(job.status().error) << job.status().error.error().line();
     const auto header = kept();
     ASSERT_TRUE(header) << header.error().line();
-    EXPECT_EQ(header->share, 4.0 / gi::kMeanSteps);
-    gi::mean_hooks().before = nullptr;
-    gi::mean_hooks().steps = 0;
+    EXPECT_EQ(header->share, 4.0 / gi::paint::kMeanSteps);
+    gi::paint_hooks().before = nullptr;
+    gi::paint_hooks().steps = 0;
     compute();
-    EXPECT_EQ(gi::mean_hooks().steps, gi::kMeanSteps - 4);
+    EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps - 4);
     EXPECT_EQ(test::bytes_of(place_), whole);
 }
 
 TEST_F(BakeJobTest, PicturesShowWhatIsUsableMeanwhileAndFollow) {
     const auto source = open_input(cache_);
     ASSERT_TRUE(source) << source.error().line();
-    request_.method.engine = "mean";
+    request_.method.engine = "paint";
     request_.method.settings = gi::default_settings(gi::Effort::interactive);
     hold_before(2);
     start({[] { return gi::Device::headless(); }, [] {}}, *source);
@@ -109,7 +110,7 @@ TEST_F(BakeJobTest, PicturesShowWhatIsUsableMeanwhileAndFollow) {
         picture = whole(number);
         ASSERT_TRUE(picture);
     }
-    EXPECT_EQ(gi::mean_hooks().steps, gi::kMeanSteps);
+    EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps);
 }
 
 TEST_F(BakeJobTest, AnUnfinishedOneNeverReplacesAFinishedOne) {
@@ -128,7 +129,7 @@ TEST_F(BakeJobTest, AnUnfinishedOneNeverReplacesAFinishedOne) {
 }
 
 TEST_F(BakeJobTest, OneThatFailsSaysWhyAndKeepsNothing) {
-    gi::mean_hooks().before = [](uint32_t) { throw std::bad_alloc(); };
+    gi::paint_hooks().before = [](uint32_t) { throw std::bad_alloc(); };
     gi::BakeJob job(order());
     job.wait();
     EXPECT_FALSE(job.status().error);

@@ -8,7 +8,8 @@
 
 #include "gi/bake/bake_file.h"
 #include "io/files/file.h"
-#include "tests/added_engine/mean/mean.h"
+#include "tests/added_engine/paint/mean_colour.h"
+#include "tests/added_engine/paint/paint.h"
 #include "tests/added_engine/run.h"
 #include "tests/viewer/program.h"
 
@@ -21,19 +22,21 @@ class BakeTest : public testing::Test {
  protected:
     void SetUp() override {
         cache_ = test::make_cornell(folder_, "20k");
-        place_ = cache_ + ".mean.bake";
-        gi::mean_hooks().steps = 0;
+        place_ = cache_ + ".paint.bake";
+        gi::paint_hooks().steps = 0;
     }
     void TearDown() override { ::unsetenv("XDG_CACHE_HOME"); }
     Result<void> prepare(const std::vector<std::string>& more = {}) {
-        std::vector<std::string> words = {"prepare", cache_, "--engine", "mean"};
+        std::vector<std::string> words = {"prepare", cache_, "--engine", "paint"};
         words.insert(words.end(), more.begin(), more.end());
-        gi::mean_hooks().steps = 0;
+        gi::paint_hooks().steps = 0;
         return test::run(words);
     }
-    /// Returns the colour of the picture's surfaces.
+    /// Returns the colour of the picture's surfaces, which is the mean colour.
     glm::vec3 painted(const std::vector<std::string>& more = {}) const {
-        return test::brightest(cache_, folder_ / "out.exr", "mean", more);
+        std::vector<std::string> words = {"--pattern", "mean"};
+        words.insert(words.end(), more.begin(), more.end());
+        return test::brightest(cache_, folder_ / "out.exr", "paint", words);
     }
     Result<gi::BakeHeader> kept() const {
         LUCARNE_ASSIGN(const auto file, InputFile::open_shared(place_));
@@ -45,38 +48,38 @@ class BakeTest : public testing::Test {
 
 TEST_F(BakeTest, IsComputedOnceAndKeptBesideTheCache) {
     ASSERT_TRUE(prepare());
-    EXPECT_EQ(gi::mean_hooks().steps, gi::kMeanSteps);
+    EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps);
     const auto header = kept();
     ASSERT_TRUE(header) << header.error().line();
-    EXPECT_EQ(header->engine, "mean");
+    EXPECT_EQ(header->engine, "paint");
     EXPECT_EQ(header->share, 1);
     ASSERT_TRUE(prepare());
-    EXPECT_EQ(gi::mean_hooks().steps, 0u) << "it is read from the file";
+    EXPECT_EQ(gi::paint_hooks().steps, 0u) << "it is read from the file";
     const glm::vec3 colour = painted();
-    EXPECT_EQ(gi::mean_hooks().steps, 0u);
+    EXPECT_EQ(gi::paint_hooks().steps, 0u);
     EXPECT_GT(colour.x, .1f);
     EXPECT_LT(colour.x, 1);
 }
 
 TEST_F(BakeTest, APictureThatWaitsComputesAllOfIt) {
     const glm::vec3 colour = painted();
-    EXPECT_EQ(gi::mean_hooks().steps, gi::kMeanSteps);
+    EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps);
     EXPECT_GT(colour.x, .1f);
     EXPECT_EQ(painted(), colour);
-    EXPECT_EQ(gi::mean_hooks().steps, gi::kMeanSteps);
+    EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps);
 }
 
 TEST_F(BakeTest, OnlyWhatItDependsOnMakesItAgain) {
     const glm::vec3 colour = painted();
-    gi::mean_hooks().steps = 0;
-    EXPECT_NEAR(painted({"--mean-gain", "2"}).x, 2 * colour.x, 1e-3f);
-    EXPECT_EQ(gi::mean_hooks().steps, 0u) << "an option of the picture";
+    gi::paint_hooks().steps = 0;
+    EXPECT_NEAR(painted({"--paint-gain", "2"}).x, 2 * colour.x, 1e-3f);
+    EXPECT_EQ(gi::paint_hooks().steps, 0u) << "an option of the picture";
     painted({"--mood", "evening"});
-    EXPECT_EQ(gi::mean_hooks().steps, 0u) << "light";
+    EXPECT_EQ(gi::paint_hooks().steps, 0u) << "light";
     EXPECT_NEAR(painted({"--mean-scale", "2"}).x, 2 * colour.x, 1e-3f);
-    EXPECT_EQ(gi::mean_hooks().steps, gi::kMeanSteps) << "an option of the precomputation";
+    EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps) << "an option of the precomputation";
     painted({"--mean-scale", "2", "--colour", "elevation"});
-    EXPECT_EQ(gi::mean_hooks().steps, 2 * gi::kMeanSteps) << "the points' colours";
+    EXPECT_EQ(gi::paint_hooks().steps, 2 * gi::paint::kMeanSteps) << "the points' colours";
 }
 
 TEST_F(BakeTest, DamagedFilesAreComputedAgain) {
@@ -86,9 +89,9 @@ TEST_F(BakeTest, DamagedFilesAreComputedAgain) {
         std::string wrong = whole;
         wrong[at] = static_cast<char>(wrong[at] ^ 0x55);
         std::ofstream(place_, std::ios::binary) << wrong;
-        gi::mean_hooks().steps = 0;
+        gi::paint_hooks().steps = 0;
         EXPECT_EQ(painted(), colour);
-        EXPECT_EQ(gi::mean_hooks().steps, gi::kMeanSteps) << at;
+        EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps) << at;
         EXPECT_EQ(test::bytes_of(place_), whole) << "the same bytes on every run";
     }
     std::ofstream(place_, std::ios::binary) << whole.substr(0, whole.size() / 2);

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "gi/registry.h"
-#include "tests/added_engine/opencl/opencl.h"
+#include "tests/added_engine/paint/paint.h"
 #include "tests/viewer/frame/on_worker.h"
 #include "viewer/inputs/input.h"
 
@@ -17,17 +17,19 @@ class LostOpenClDevice : public test::OnWorker {
     void SetUp() override {
         const auto source = open_input(test::make_cornell(folder_, "20k"));
         ASSERT_TRUE(source) << source.error().line();
-        request_.method.engine = "opencl";
+        request_.method.engine = "paint";
+        request_.method.settings = gi::default_settings(gi::Effort::high);
         start(device(), *source);
     }
-    void TearDown() override { gi::opencl_losses() = gi::LossPlan(""); }
+    void TearDown() override { gi::paint_hooks().opencl_losses = gi::LossPlan(""); }
     static WorkerDevice device() {
         return {[] { return gi::Device::headless(); }, [] {}};
     }
 };
 
 TEST_F(LostOpenClDevice, IsReplacedTogetherWithTheOpenGlDeviceAndTheSameRequestGoesOn) {
-    gi::opencl_losses() = gi::LossPlan("1,2");  // at the first run, then at the first download
+    gi::paint_hooks().opencl_losses =
+        gi::LossPlan("1,9");  // at the first run, then at the download after eight
     const uint64_t number = worker_->request(request_);
     for (int i = 0; i < 2; ++i) {
         const auto lost = loss();
@@ -48,7 +50,7 @@ TEST(OpenClEngineDeathTest, IsRefusedWithTheNameOfThePackageWhereThereIsNoDevice
     EXPECT_EXIT(
         {
             ::setenv("OCL_ICD_VENDORS", "/nonexistent", 1);
-            const auto made = gi::make_engine("opencl");
+            const auto made = gi::make_engine("paint");
             std::fputs(made ? "made" : made.error().line().c_str(), stderr);
             std::exit(made || !gi::make_engine("vpl"));
         },
