@@ -151,16 +151,20 @@ Result<BakeHeader> read_bake_header(const ByteSource& file) {
     return header_of(list.first);
 }
 
+std::filesystem::path bake_beside(const std::filesystem::path& cache, std::string_view engine) {
+    return fmt::format("{}.{}.bake", cache.string(), engine);
+}
+
 std::filesystem::path bake_place(const std::filesystem::path& cache, std::string_view engine) {
-    const std::string ending = fmt::format(".{}.bake", engine);
-    const std::filesystem::path beside = cache.string() + ending;
+    const std::filesystem::path beside = bake_beside(cache, engine);
     if (check_output(beside, true)) return beside;
     const std::filesystem::path folder = user_folder("XDG_CACHE_HOME", ".cache");
     if (folder.empty()) return {};
     std::error_code unknown;
     const auto whole = std::filesystem::absolute(cache, unknown);
     std::filesystem::create_directories(folder, unknown);
-    const std::filesystem::path file = folder / (kept_name((unknown ? cache : whole).string()) + ending);
+    const std::filesystem::path file =
+        bake_beside(folder / kept_name((unknown ? cache : whole).string()), engine);
     return check_output(file, true) ? file : std::filesystem::path();
 }
 

@@ -36,9 +36,10 @@ Result<void> write_bake(const std::filesystem::path& path, const BakeFile& bake)
 Result<BakeFile> read_bake(const ByteSource& file, uint64_t most_bytes);
 Result<BakeHeader> read_bake_header(const ByteSource& file);
 
-/// Returns where the bake of an engine is kept for a cache: "scan.luc.paths.bake" beside "scan.luc", else in
-/// the user's cache folder under a name made of the cache's path, which is created. Empty if neither can be
-/// written.
+/// Returns the name of an engine's bake beside its cache: "scan.luc.paths.bake" for "scan.luc".
+std::filesystem::path bake_beside(const std::filesystem::path& cache, std::string_view engine);
+/// Returns where the bake of an engine is kept for a cache: beside it, else in the user's cache folder under
+/// a name made of the cache's path, which is created. Empty if neither can be written.
 std::filesystem::path bake_place(const std::filesystem::path& cache, std::string_view engine);
 
 }  // namespace lucarne::gi

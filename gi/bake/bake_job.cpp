@@ -1,6 +1,8 @@
 #include "gi/bake/bake_job.h"
 
 #include <chrono>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include "gi/bake/bake_file.h"
@@ -73,23 +75,36 @@ void BakeJob::note(const Precomputation& work, std::string_view next) {
     published_();
 }
 
-/// Returns work that continues from the kept file if that was made from the same input, else new work.
-std::unique_ptr<Precomputation> BakeJob::begin(uint64_t key) const {
+/// Returns work that continues from a kept file. Errors: it is damaged, or was made from another input.
+Result<std::unique_ptr<Precomputation>> BakeJob::restored(const std::filesystem::path& path,
+                                                          uint64_t key) const {
     const Precomputes& how = *order_.engine->precomputes;
+    LUCARNE_ASSIGN(const auto file, InputFile::open_shared(path));
+    LUCARNE_ASSIGN(const BakeHeader header, read_bake_header(*file));
+    if (header.engine != order_.engine->name || header.version != how.version || header.key != key)
+        return rejected(path.string(), "was computed from another scan, scene or options");
+    LUCARNE_ASSIGN(const BakeFile bake, read_bake(*file, order_.most_bytes));
     auto work = how.make();
-    std::error_code unknown;
-    if (order_.file.empty() || !std::filesystem::exists(order_.file, unknown)) return work;
-    const auto restored = [&]() -> Result<void> {
-        LUCARNE_ASSIGN(const auto file, InputFile::open_shared(order_.file));
-        LUCARNE_ASSIGN(const BakeHeader header, read_bake_header(*file));
-        if (header.engine != order_.engine->name || header.version != how.version || header.key != key)
-            return rejected(order_.file.string(), "was computed from another scan, scene or options");
-        LUCARNE_ASSIGN(const BakeFile bake, read_bake(*file, order_.most_bytes));
-        return work->restore(order_.input, bake.sections);
-    }();
-    if (restored) return work;
-    log::info("{}; it is computed again", restored.error().line());
-    return how.make();  // the other one may have taken in a part
+    LUCARNE_TRY(work->restore(order_.input, bake.sections));
+    return work;
+}
+
+/// Returns work that continues from a kept file if one was made from the same input, else new work.
+std::unique_ptr<Precomputation> BakeJob::begin(uint64_t key) {
+    std::optional<Error> problem;
+    for (const std::filesystem::path& path : {order_.file, order_.read_only}) {
+        std::error_code unknown;
+        if (path.empty() || !std::filesystem::exists(path, unknown)) continue;
+        if (auto work = restored(path, key)) {
+            const std::lock_guard lock(mutex_);
+            status_.file = path;
+            return std::move(*work);
+        } else {
+            problem = std::move(work).error();
+        }
+    }
+    if (problem) log::info("{}; it is computed again", problem->line());
+    return order_.engine->precomputes->make();
 }
 
 /// Writes the file. An unfinished result never replaces a finished one of another input.
@@ -104,9 +119,12 @@ Result<void> BakeJob::keep(const Precomputation& work, uint64_t key) {
             if (kept && kept->share >= 1 && kept->key != key) return {};
         }
     }
-    return write_bake(
+    LUCARNE_TRY(write_bake(
         order_.file,
-        {{std::string(order_.engine->name), order_.engine->precomputes->version, key, share}, work.save()});
+        {{std::string(order_.engine->name), order_.engine->precomputes->version, key, share}, work.save()}));
+    const std::lock_guard lock(mutex_);
+    status_.file = order_.file;
+    return {};
 }
 
 Result<void> BakeJob::compute() {
@@ -134,6 +152,7 @@ Result<void> BakeJob::compute() {
     }
     if (!was_whole) {
         auto kept = keep(*work, key);
+        if (!kept && stop_) log::warn("{}", kept.error().line());  // nobody asks for the status any more
         const std::lock_guard lock(mutex_);
         status_.keeping = std::move(kept);
     }

@@ -23,10 +23,12 @@ struct BakeOrder {
     std::shared_ptr<const octree::NodeSource> source;
     std::shared_ptr<const SurfelPreparation> preparation;
     octree::Cut cut;
-    BakeInput input;                ///< without the cut's surfels; cut.frame is set
-    bool fill_holes = true;         ///< with the source's synthetic surfels
-    Clip clip;                      ///< of what neither blocks nor reflects light
-    std::filesystem::path file;     ///< empty: nothing is kept
+    BakeInput input;             ///< without the cut's surfels; cut.frame is set
+    bool fill_holes = true;      ///< with the source's synthetic surfels
+    Clip clip;                   ///< of what neither blocks nor reflects light
+    std::filesystem::path file;  ///< empty: nothing is kept
+    std::filesystem::path
+        read_only;                  ///< another that is read if `file` holds nothing for this input; or empty
     uint64_t most_bytes = 1 << 30;  ///< of the file when unpacked
 };
 
@@ -53,6 +55,7 @@ class BakeJob {
         bool ended = false;                ///< finished or failed
         Result<void> error;                ///< why it failed
         Result<void> keeping;              ///< why the result could not be kept
+        std::filesystem::path file;        ///< that holds the result; empty: none does
     };
     Status status() const;
     /// Waits until it has ended or `stop` is true (null: never). `progress` counts thousandths of the work.
@@ -61,7 +64,8 @@ class BakeJob {
  private:
     Result<void> compute();
     Result<void> keep(const Precomputation& work, uint64_t key);
-    std::unique_ptr<Precomputation> begin(uint64_t key) const;
+    std::unique_ptr<Precomputation> begin(uint64_t key);
+    Result<std::unique_ptr<Precomputation>> restored(const std::filesystem::path& path, uint64_t key) const;
     void note(const Precomputation& work, std::string_view step);
 
     BakeOrder order_;

@@ -55,10 +55,11 @@ void EngineBake::update(const BakeSubject& subject) {
         order.input.materials.push_back(gi::device_material(material, subject.scene.albedo.scale));
     order.input.environment = subject.scene.environment;
     order.input.settings = subject.settings;
-    file_.clear();
     if (const auto identity = source.identity()) {
         order.input.source = identity->content;
-        order.file = file_ = gi::bake_place(identity->file, subject.engine.name);
+        order.file = gi::bake_place(identity->file, subject.engine.name);
+        const auto beside = gi::bake_beside(identity->file, subject.engine.name);
+        if (beside != order.file) order.read_only = beside;
     }
     job_ = std::make_unique<gi::BakeJob>(std::move(order), published_);
 }

@@ -40,8 +40,6 @@ class EngineBake {
 
     bool running() const { return job_ != nullptr; }
     gi::BakeJob::Status status() const { return job_ ? job_->status() : gi::BakeJob::Status{}; }
-    /// The file in which the result is kept; empty if it is not.
-    const std::filesystem::path& file() const { return file_; }
     /// Meaning of the coordinates of its surfels.
     const gi::LocalFrame& frame() const { return frame_; }
 
@@ -65,7 +63,6 @@ class EngineBake {
     std::function<void()> published_ = [] {};
     Inputs inputs_;
     gi::LocalFrame frame_;
-    std::filesystem::path file_;
     std::unique_ptr<gi::BakeJob> job_;
 };
 

@@ -149,7 +149,7 @@ void Pipeline::State::update_bake() {
 }
 
 /// Takes what the engine has computed in advance so far; with `wait` all of it. Without `wait` a failure is a
-/// warning, and the engine draws without it.
+/// warning, and the engine draws without it. So is one to keep it.
 Result<void> Pipeline::State::take_bake(const FrameRequest& request) {
     update_bake();
     if (!bake.running()) {
@@ -157,10 +157,12 @@ Result<void> Pipeline::State::take_bake(const FrameRequest& request) {
         return {};
     }
     if (request.wait) LUCARNE_TRY(bake.wait(request.stop, nullptr));
-    const bool failed_before = baked.ended && !baked.error;
+    const bool failed_before = baked.ended && !baked.error, unkept_before = !baked.keeping;
     baked = bake.status();
     if (baked.ended && !baked.error && !failed_before)
         log::warn("{}; the picture is made without it", baked.error.error().line());
+    if (!baked.keeping && !unkept_before)
+        log::warn("{}; it will be computed again", baked.keeping.error().line());
     if (std::exchange(bake_version, baked.version) != baked.version) presentation.restart();
     return {};
 }
@@ -419,8 +421,9 @@ Result<std::filesystem::path> Pipeline::prepare(Progress* progress) {
     LUCARNE_TRY(state.surfels.renew(state.scene));
     state.update_bake();
     LUCARNE_TRY(state.bake.wait(nullptr, progress));
-    LUCARNE_TRY(state.bake.status().keeping);
-    return state.bake.file();
+    const gi::BakeJob::Status done = state.bake.status();
+    LUCARNE_TRY(done.keeping);
+    return done.file;
 }
 
 Result<void> Pipeline::set_method(const Method& method) {

@@ -129,8 +129,8 @@ class Pipeline {
     void on_prepared(std::function<void()> published);
     /// Computes in advance all that the engine asks for with the present settings and scene, as render() with
     /// `wait` does, and keeps it. Returns the file; empty if there is no place for it. `progress` counts
-    /// thousandths. Errors: it fails; it cannot be kept. An engine
-    /// that computes nothing in advance is done at once.
+    /// thousandths. Errors: it fails; it cannot be kept. An engine that computes nothing in advance is done
+    /// at once.
     Result<std::filesystem::path> prepare(Progress* progress = nullptr);
 
     const gi::EngineInfo& engine() const;
