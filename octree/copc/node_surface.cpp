@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "octree/normals/surface/area_floor.h"
+#include "octree/tree/area_floor.h"
 
 namespace lucarne::octree {
 namespace {

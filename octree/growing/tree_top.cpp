@@ -14,7 +14,7 @@
 #include "io/core/parallel.h"
 #include "octree/cache/file.h"
 #include "octree/convert/nodes/subtree.h"
-#include "octree/normals/surface/area_floor.h"
+#include "octree/tree/area_floor.h"
 
 namespace lucarne::octree {
 namespace {

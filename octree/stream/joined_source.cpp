@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 
 #include "io/core/random.h"
-#include "octree/normals/surface/area_floor.h"
+#include "octree/tree/area_floor.h"
 
 namespace lucarne::octree {
 namespace {

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "gi/raster/native/vectors-inl.h"
+#include "gi/native/vectors-inl.h"
 #include "gi/shared/light.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -8,7 +8,7 @@
 #define HWY_TARGET_INCLUDE "gi/lighting/native/own_light.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
-#include "gi/raster/native/texels-inl.h"
+#include "gi/native/texels-inl.h"
 
 #ifndef LUCARNE_NATIVE_OWN_LIGHT_ONCE
 #define LUCARNE_NATIVE_OWN_LIGHT_ONCE

@@ -1,6 +1,6 @@
 // Surfels as discs in a view, several at a time: gi/shared/disc.h, disc.glsl and ellipse.glsl for vectors,
 // which have no operators on all instruction sets. The operations and their order are the same, and none is
-// fused, so that every instruction set gives the same bits (tests/gi/raster/vectors_test.cpp compares them).
+// fused, so that every instruction set gives the same bits (tests/gi/native/vectors_test.cpp compares them).
 // Included once for each instruction set (Highway's foreach_target.h).
 #if defined(LUCARNE_GI_RASTER_NATIVE_DISC_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef LUCARNE_GI_RASTER_NATIVE_DISC_INL_H
@@ -9,11 +9,11 @@
 #define LUCARNE_GI_RASTER_NATIVE_DISC_INL_H
 #endif
 
+#include "gi/native/vectors-inl.h"
 #include "gi/raster/disc_view.h"
 #include "gi/raster/native/area_roots.h"
 #include "gi/raster/native/large_disc.h"
 #include "gi/raster/native/tiles.h"
-#include "gi/raster/native/vectors-inl.h"
 #include "gi/shared/disc.h"
 #include "gi/shared/edge.h"
 #include "gi/shared/gbuffer.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "octree/normals/surface/area_floor.h"
+#include "octree/tree/area_floor.h"
 
 namespace lucarne::octree {
 

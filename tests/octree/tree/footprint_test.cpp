@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "octree/normals/surface/area_floor.h"
+#include "octree/tree/area_floor.h"
 #include "tests/octree/normals/normal_clouds.h"
 
 namespace lucarne::octree {

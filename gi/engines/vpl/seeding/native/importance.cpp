@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "gi/raster/native/reflectance.h"
+#include "gi/native/reflectance.h"
 #include "gi/shared/luminance.h"
 #include "io/core/parallel.h"
 
@@ -15,7 +15,7 @@
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include "gi/lighting/native/emission-inl.h"
-#include "gi/raster/native/texels-inl.h"
+#include "gi/native/texels-inl.h"
 
 #ifndef LUCARNE_NATIVE_IMPORTANCE_ONCE
 #define LUCARNE_NATIVE_IMPORTANCE_ONCE

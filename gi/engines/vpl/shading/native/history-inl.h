@@ -8,7 +8,7 @@
 
 #include "gi/engines/vpl/shading/merging.h"
 #include "gi/engines/vpl/shading/native/merge.h"
-#include "gi/raster/native/texels-inl.h"
+#include "gi/native/texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lucarne::gi::vpl::native::HWY_NAMESPACE {

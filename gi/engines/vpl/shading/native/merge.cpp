@@ -8,7 +8,7 @@
 
 #include "gi/engines/vpl/shading/native/surfaces.h"
 #include "gi/engines/vpl/shading/native/window.h"
-#include "gi/raster/native/reflectance.h"
+#include "gi/native/reflectance.h"
 #include "io/core/parallel.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)

@@ -7,7 +7,7 @@
 #endif
 
 #include "gi/engines/vpl/shading/native/surfaces.h"
-#include "gi/raster/native/texels-inl.h"
+#include "gi/native/texels-inl.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/gbuffer.h"
 

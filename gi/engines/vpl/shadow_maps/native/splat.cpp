@@ -18,7 +18,7 @@
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include "gi/engines/vpl/shadow_maps/native/texel-inl.h"
-#include "gi/raster/native/vectors-inl.h"
+#include "gi/native/vectors-inl.h"
 
 #ifndef LUCARNE_NATIVE_SPLAT_ONCE
 #define LUCARNE_NATIVE_SPLAT_ONCE
@@ -27,7 +27,7 @@ namespace lucarne::gi::vpl::native {
 /// Maps that are drawn together: blocks are decoded once for all of them.
 constexpr uint32_t kGroup = 16;
 
-/// Radii and scales of casters by their codes, see casters.glsl and enter.comp.
+/// Radii and scales of casters by their codes, see casters.glsl and enqueue.comp.
 struct CasterTables {
     std::array<float, 128> radii, scales;
     CasterTables(float cut_size, float splat_angle) {
@@ -114,8 +114,8 @@ void decode_casters(const SplatJob& job, uint32_t block, Casters& casters) {
     }
 }
 
-/// Returns a bit for each map into which a block may have to be drawn, see meet.comp.
-uint32_t meet(const SplatJob& job, const MapFrame* maps, uint32_t block) {
+/// Returns a bit for each map into which a block may have to be drawn, see cull.comp.
+uint32_t cull(const SplatJob& job, const MapFrame* maps, uint32_t block) {
     const float* bounds = job.memory.bounds + size_t{block} * kBoundsWords;
     const glm::vec3 low(bounds[0], bounds[1], bounds[2]), high(bounds[4], bounds[5], bounds[6]);
     const float most_area = bounds[3], most_radius = bounds[7];
@@ -136,9 +136,9 @@ uint32_t meet(const SplatJob& job, const MapFrame* maps, uint32_t block) {
     return met;
 }
 
-/// The casters of a block that have to be drawn into a map, see enter.comp. Positions are relative to the
+/// The casters of a block that have to be drawn into a map, see enqueue.comp. Positions are relative to the
 /// map's centre.
-size_t enter(const SplatJob& job, const MapFrame& map, const Casters& casters, Casters& entered) {
+size_t enqueue(const SplatJob& job, const MapFrame& map, const Casters& casters, Casters& queued) {
     const Floats df;
     const F largest = set(kLargestSplat * job.layout.splat_angle), zero = hn::Zero(df);
     size_t count = 0;
@@ -158,15 +158,15 @@ size_t enter(const SplatJob& job, const MapFrame& map, const Casters& casters, C
         const size_t more = hn::CountTrue(df, drawn);
         if (more == 0) continue;
         const auto keep = [&](F value, float* to) { hn::StoreU(hn::Compress(value, drawn), df, to + count); };
-        keep(offset.x, entered.x);
-        keep(offset.y, entered.y);
-        keep(offset.z, entered.z);
-        keep(normal.x, entered.nx);
-        keep(normal.y, entered.ny);
-        keep(normal.z, entered.nz);
-        keep(radius, entered.radius);
+        keep(offset.x, queued.x);
+        keep(offset.y, queued.y);
+        keep(offset.z, queued.z);
+        keep(normal.x, queued.nx);
+        keep(normal.y, queued.ny);
+        keep(normal.z, queued.nz);
+        keep(radius, queued.radius);
         const U id = hn::Load(Words(), casters.id + i);
-        hn::StoreU(hn::Compress(id, hn::RebindMask(Words(), drawn)), Words(), entered.id + count);
+        hn::StoreU(hn::Compress(id, hn::RebindMask(Words(), drawn)), Words(), queued.id + count);
         count += more;
     }
     return count;
@@ -338,21 +338,20 @@ void DrawMaps(const SplatJob& job) {
     MapFrame maps[kGroup];
     for (uint32_t map = job.first_map; map < job.map_end; ++map)
         maps[map - job.first_map] = frame_of(job.memory.lights[map]);
-    Casters casters, entered;
+    Casters casters, queued;
     MapDiscs discs;
     const size_t map_texels = size_t{job.layout.side} * job.layout.side;
     for (uint32_t block = 0; block < job.memory.blocks; ++block) {
-        uint32_t met = meet(job, maps, block);
+        uint32_t met = cull(job, maps, block);
         if (met == 0) continue;
         decode_casters(job, block, casters);
         for (; met; met &= met - 1) {
             const auto i = static_cast<uint32_t>(std::countr_zero(met));
-            const size_t count = enter(job, maps[i], casters, entered);
+            const size_t count = enqueue(job, maps[i], casters, queued);
             for (size_t at = 0; at < count; at += hn::Lanes(Floats()))
-                for (uint32_t left = set_up(job, maps[i], entered, at, count, discs); left;
-                     left &= left - 1) {
+                for (uint32_t left = set_up(job, maps[i], queued, at, count, discs); left; left &= left - 1) {
                     const auto lane = static_cast<size_t>(std::countr_zero(left));
-                    draw(job, discs, lane, entered.id[at + lane], (job.first_map + i) * map_texels);
+                    draw(job, discs, lane, queued.id[at + lane], (job.first_map + i) * map_texels);
                 }
         }
     }

@@ -24,7 +24,7 @@ struct SplatLayout {
     uint32_t id_bits;   ///< of a source's id
 };
 
-/// Draws the casters into all maps, as meet.comp, enter.comp, splat.comp and splat_large.comp do. A thread
+/// Draws the casters into all maps, as cull.comp, enqueue.comp, splat.comp and splat_large.comp do. A thread
 /// draws whole maps, so it needs neither queues nor atomic operations.
 void splat(const SplatMemory& memory, const SplatLayout& layout);
 

@@ -1,11 +1,11 @@
 // Vectors of floats and words for passes in C++, on Highway. No operation is fused with another, so that
 // every instruction set gives the same bits. Included once for each instruction set (Highway's
 // foreach_target.h).
-#if defined(LUCARNE_GI_RASTER_NATIVE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef LUCARNE_GI_RASTER_NATIVE_VECTORS_INL_H
-#undef LUCARNE_GI_RASTER_NATIVE_VECTORS_INL_H
+#if defined(LUCARNE_GI_NATIVE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LUCARNE_GI_NATIVE_VECTORS_INL_H
+#undef LUCARNE_GI_NATIVE_VECTORS_INL_H
 #else
-#define LUCARNE_GI_RASTER_NATIVE_VECTORS_INL_H
+#define LUCARNE_GI_NATIVE_VECTORS_INL_H
 #endif
 
 #include <glm/vec4.hpp>

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "gi/native/texels-inl.h"
 #include "gi/raster/native/disc-inl.h"
 #include "gi/raster/native/large_disc.h"
-#include "gi/raster/native/texels-inl.h"
 #include "gi/shared/disc.h"
 #include "gi/shared/edge.h"
 #include "gi/shared/frame.h"

@@ -1,12 +1,12 @@
 // gbuffer.h and camera.h for vectors of texels: decodes them and computes the rays of a view. The formulas
 // stand a second time here because vectors have no operators on all instruction sets, and because they share
-// divisions; a test compares both (tests/gi/raster/vectors_test.cpp). Included once for each instruction set
+// divisions; a test compares both (tests/gi/native/vectors_test.cpp). Included once for each instruction set
 // (Highway's foreach_target.h).
-#if defined(LUCARNE_GI_RASTER_NATIVE_TEXELS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef LUCARNE_GI_RASTER_NATIVE_TEXELS_INL_H
-#undef LUCARNE_GI_RASTER_NATIVE_TEXELS_INL_H
+#if defined(LUCARNE_GI_NATIVE_TEXELS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LUCARNE_GI_NATIVE_TEXELS_INL_H
+#undef LUCARNE_GI_NATIVE_TEXELS_INL_H
 #else
-#define LUCARNE_GI_RASTER_NATIVE_TEXELS_INL_H
+#define LUCARNE_GI_NATIVE_TEXELS_INL_H
 #endif
 
 #include <cstring>
@@ -14,8 +14,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "gi/raster/native/reflectance.h"
-#include "gi/raster/native/vectors-inl.h"
+#include "gi/native/reflectance.h"
+#include "gi/native/vectors-inl.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/gbuffer.h"
 

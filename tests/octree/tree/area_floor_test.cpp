@@ -1,4 +1,4 @@
-#include "octree/normals/surface/area_floor.h"
+#include "octree/tree/area_floor.h"
 
 #include <algorithm>
 #include <cmath>
