@@ -37,7 +37,7 @@ Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
 }
 
 void TreeLighting::begin(Frame& frame) {
-    views_ = light_views(frame, bright_);
+    views_ = light_views(frame, bright_, frame.index);
     light_gbuffers_.begin(frame.gl.device, views_, views_.size());
 }
 

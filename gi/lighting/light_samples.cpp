@@ -23,8 +23,8 @@ glm::vec3 xyz(const glm::vec4& v) {
 /// How many samples stand in for a light in this frame, and which.
 class Strata {
  public:
-    Strata(uint32_t count, const Frame& frame, uint64_t light)
-        : count_(count), frame_(frame.index), seed_(frame.settings[kSeed]), light_(light) {}
+    Strata(uint32_t count, uint64_t index, uint64_t seed, uint64_t light)
+        : count_(count), frame_(index), seed_(seed), light_(light) {}
     uint32_t count() const { return count_; }
     uint64_t first() const { return frame_ * count_; }  ///< of all frames' samples, the first of this frame
     AreaPoints area_points() const { return AreaPoints(count_, seed_, light_); }
@@ -142,7 +142,7 @@ uint32_t light_faces(const Light& light) {
     return light.kind == kPointLight ? 6 : light.kind == kCosineLight ? 4 : 1;
 }
 
-std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky) {
+std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky, uint64_t index) {
     std::vector<SharpLight> result;
     std::vector<size_t> areas, suns;
     for (size_t i = 0; i < frame.lights.size(); ++i) {
@@ -161,7 +161,9 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
         views -= std::min(views, samples * faces);
         return samples;
     };
-    const auto strata = [&](size_t i, uint32_t count) { return Strata(count, frame, i); };
+    const auto strata = [&](size_t i, uint32_t count) {
+        return Strata(count, index, frame.settings[kSeed], i);
+    };
     for (const size_t i : suns) {
         const uint32_t count = share(most_samples(frame.lights[i], frame.settings[kLightResolution]), 1);
         add_sun(frame.lights[i], strata(i, count), frame.gl.cuts.light_views[i], result);

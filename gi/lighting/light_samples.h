@@ -19,10 +19,10 @@ struct SharpLight {
 /// Returns the lights of the frame. Lights with a size are replaced by sharp lights that stand in for them
 /// in this frame: a sun by directions within its cap, rectangles and discs by points that emit with the
 /// cosine, the sky (`sky`, of the frame's environment) by directions in proportion to its luminance. The
-/// samples are stratified and differ for each Frame::index, so the average over frames converges to the
-/// light with its size. kLightSamples views are shared out among those lights, at least one sample each;
-/// black lights get none.
-std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky);
+/// samples are stratified and differ for each `index`, for example Frame::index, so the average over frames
+/// converges to the light with its size. kLightSamples views are shared out among those lights, at least one
+/// sample each; black lights get none.
+std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky, uint64_t index);
 
 /// Returns the number of faces of a light, and so of its views (light_face() in gi/shared/light.h).
 uint32_t light_faces(const Light& light);

@@ -126,10 +126,10 @@ CameraView view_of(const Light& light, uint32_t face, const Frame& frame, uint32
 
 }  // namespace
 
-std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky) {
+std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky, uint64_t index) {
     std::vector<LightView> views;
     const uint32_t side = frame.settings[kLightResolution];
-    for (const auto& [light, cut, of_sky] : sharp_lights(frame, sky)) {
+    for (const auto& [light, cut, of_sky] : sharp_lights(frame, sky, index)) {
         // Many such samples make a light with a size, whose shadows are soft, so half the resolution is
         // enough.
         const uint32_t resolution = light.kind == kCosineLight ? std::max(side / 2, 1u) : side;

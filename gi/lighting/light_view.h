@@ -18,10 +18,11 @@ struct LightView {
     bool of_sky = false;  ///< of a light that stands in for the sky
 };
 
-/// Returns the views of all lights of the frame (`sky` is that of its environment), with kLightResolution
+/// Returns the views of all lights of the frame (`sky` is that of its environment; `index` in place of
+/// Frame::index chooses the samples of lights with a size), with kLightResolution
 /// texels along a side, half as many for points of areas. The view of a directional light covers the bounds
 /// of the frame with a rectangle of as many texels; its pinhole is so far away that its rays diverge by less
 /// than a texel over the height of the scene.
-std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky);
+std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky, uint64_t index);
 
 }  // namespace lucarne::gi

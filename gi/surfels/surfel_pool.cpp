@@ -9,6 +9,11 @@
 #include "gi/shared/cut_bindings.h"
 
 namespace lucarne::gi {
+namespace {
+
+constexpr uint32_t kMostDownloaded = 1 << 16;  // surfels by one call, 1 MiB
+
+}  // namespace
 
 std::optional<PointPlace> CutPoints::find(uint32_t id) const {
     const uint32_t block = id / kBlockSurfels;
@@ -112,14 +117,23 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
 std::vector<Surfel> SurfelPool::download(const DeviceCut& cut) const {
     std::vector<Surfel> surfels;
     surfels.reserve(cut.surfels());
-    std::array<PackedSurfel, kBlockSurfels> packed;
-    for (const CutBlock& block : cut.parts_.blocks) {
-        buffer_.download(size_t{block.first} * sizeof(PackedSurfel),
-                         std::as_writable_bytes(std::span(packed).first(block.count)));
-        const CutItem& item = cut.parts_.items[block.item];
-        for (uint32_t i = 0; i < block.count; ++i) {
-            const Surfel surfel = unpack(cut.parts_.items, item, packed[i]);
-            if (!item.clip || cut.parts_.clip.keeps(surfel.position)) surfels.push_back(surfel);
+    std::vector<PackedSurfel> packed;
+    const std::span<const CutBlock> blocks = cut.parts_.blocks;
+    for (size_t next = 0; next < blocks.size();) {
+        // Each call waits for the device, so one takes all blocks that lie one behind the other.
+        const uint32_t first = blocks[next].first;
+        uint32_t count = 0;
+        size_t end = next;
+        while (end < blocks.size() && blocks[end].first == first + count && count < kMostDownloaded)
+            count += blocks[end++].count;
+        packed.resize(count);
+        buffer_.download(size_t{first} * sizeof(PackedSurfel), std::as_writable_bytes(std::span(packed)));
+        for (size_t at = 0; next < end; at += blocks[next++].count) {
+            const CutItem& item = cut.parts_.items[blocks[next].item];
+            for (uint32_t i = 0; i < blocks[next].count; ++i) {
+                const Surfel surfel = unpack(cut.parts_.items, item, packed[at + i]);
+                if (!item.clip || cut.parts_.clip.keeps(surfel.position)) surfels.push_back(surfel);
+            }
         }
     }
     return surfels;

@@ -73,7 +73,7 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
     const size_t count = tracer->surfels_.size();
     auto& embree = *tracer->embree_;
     embree.device = rtcNewDevice(nullptr);
-    if (!embree.device) return failed("reference", "Embree does not start on this machine");
+    if (!embree.device) return failed("rays", "Embree does not start on this machine");
     embree.scene = rtcNewScene(embree.device);
     rtcSetSceneFlags(embree.scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);  // for each_crossed()
     // No compact or robust flags: robust ones only concern triangles, and discs are planes with a radius.
@@ -106,7 +106,7 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
     }
     rtcCommitScene(embree.scene);
     if (rtcGetDeviceError(embree.device) != RTC_ERROR_NONE)
-        return failed("reference", "Embree cannot build its tree over the surfels (out of memory?)",
+        return failed("rays", "Embree cannot build its tree over the surfels (out of memory?)",
                       "lower --points");
     return tracer;
 }

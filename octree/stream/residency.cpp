@@ -62,10 +62,10 @@ struct ResidencyBase::State {
     bool stop = false;
     std::vector<std::thread> threads;
 
-    void take_wishes(std::span<const Cut* const> cuts, bool ahead, std::vector<uint32_t>& wanted);
-    void order_wishes(std::vector<uint32_t> wanted);
+    void mark_wanted(std::span<const Cut* const> cuts, bool ahead, std::vector<uint32_t>& wanted);
+    void order_wanted(std::vector<uint32_t> wanted);
     void admit();
-    void forget_strangers();
+    void drop_unwanted();
     void evict(uint32_t node);
     bool make_room(uint64_t bytes);
     bool transit_full() const;
@@ -80,17 +80,17 @@ struct ResidencyBase::State {
 };
 
 /// Marks the nodes of the cuts as wanted and appends those not yet named by this want() to `wanted`.
-void ResidencyBase::State::take_wishes(std::span<const Cut* const> cuts, bool ahead,
+void ResidencyBase::State::mark_wanted(std::span<const Cut* const> cuts, bool ahead,
                                        std::vector<uint32_t>& wanted) {
     const size_t nodes = source.nodes().size();
     for (const Cut* cut : cuts)
-        for (const CutNode& wish : cut->nodes) {
-            if (wish.node >= nodes) continue;
-            Entry& entry = entries[wish.node];
+        for (const CutNode& wanted_node : cut->nodes) {
+            if (wanted_node.node >= nodes) continue;
+            Entry& entry = entries[wanted_node.node];
             const bool named = entry.last_wanted == wants;
             if (named && ahead && !entry.ahead) continue;
-            if (!named) wanted.push_back(wish.node);
-            entry.priority = named ? std::max(entry.priority, wish.priority) : wish.priority;
+            if (!named) wanted.push_back(wanted_node.node);
+            entry.priority = named ? std::max(entry.priority, wanted_node.priority) : wanted_node.priority;
             entry.ahead = ahead;
             entry.last_wanted = wants;
             if (ahead || !entry.fetched) continue;
@@ -100,7 +100,7 @@ void ResidencyBase::State::take_wishes(std::span<const Cut* const> cuts, bool ah
 }
 
 /// Moves the wanted nodes into the queue and raises each parent's priority to at least that of its children.
-void ResidencyBase::State::order_wishes(std::vector<uint32_t> wanted) {
+void ResidencyBase::State::order_wanted(std::vector<uint32_t> wanted) {
     const auto nodes = source.nodes();
     std::ranges::sort(wanted, std::greater<>());  // children before parents
     for (const uint32_t node : wanted) {
@@ -162,7 +162,7 @@ void ResidencyBase::State::admit() {
 
 /// Drops entries that are neither wanted nor resident nor being loaded. Lists the nodes that may be evicted,
 /// the least recently wanted last.
-void ResidencyBase::State::forget_strangers() {
+void ResidencyBase::State::drop_unwanted() {
     evictable.clear();
     std::erase_if(entries, [&](const auto& pair) {
         return !pair.second.held && !pair.second.in_flight && pair.second.last_wanted != wants;
@@ -359,11 +359,11 @@ void ResidencyBase::want(std::span<const Cut* const> cuts, std::span<const Cut* 
         ++state_->wants;
         state_->broken.resize(state_->source.nodes().size());
         std::vector<uint32_t> wanted;
-        state_->take_wishes(cuts, false, wanted);
-        state_->take_wishes(ahead, true, wanted);
-        state_->order_wishes(std::move(wanted));
+        state_->mark_wanted(cuts, false, wanted);
+        state_->mark_wanted(ahead, true, wanted);
+        state_->order_wanted(std::move(wanted));
         state_->admit();
-        state_->forget_strangers();
+        state_->drop_unwanted();
         if (state_->nothing_moves()) state_->idle.notify_all();
     }
     state_->work.notify_all();

@@ -50,9 +50,7 @@ Result<void> DirectEngine::render(Frame& frame) {
     // In motion shadows may be those of a moment ago; they are renewed as far as the time goes.
     const bool in_parts = frame.moving && !frame.light_budget.whole();
     if (!in_parts) light_index_ = frame.index;
-    Frame sampled = frame;
-    sampled.index = light_index_;
-    const std::vector<LightView> views = light_views(sampled, sky_.directions);
+    const std::vector<LightView> views = light_views(frame, sky_.directions, light_index_);
     Device& device = frame.gl.device;
     light_gbuffers_.begin(device, views, views.size());
     if (in_parts) LUCARNE_TRY(light_gbuffers_.renew(frame, views));

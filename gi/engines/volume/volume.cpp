@@ -118,7 +118,7 @@ Result<void> VolumeEngine::add_direct(Frame& frame, bool any_state) {
 
 Result<void> VolumeEngine::render(Frame& frame) {
     const bool direct = wants_direct(frame.settings), in_parts = frame.moving && !frame.light_budget.whole();
-    views_ = light_views(frame, bright_);
+    views_ = light_views(frame, bright_, frame.index);
     light_gbuffers_.begin(frame.gl.device, views_, views_.size());
     missing_ = 0;
     if (wants_indirect(frame.settings) || (direct && !sky_.texels.empty())) {

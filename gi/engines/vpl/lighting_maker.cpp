@@ -169,9 +169,7 @@ Result<void> LightingMaker::place_further_importons(Frame& frame, const Inputs& 
 }
 
 std::vector<LightView> LightingMaker::light_views_of(const Frame& frame, const Inputs& inputs) const {
-    Frame sampled = frame;
-    sampled.index = inputs.light_index;
-    return light_views(sampled, sky_);
+    return light_views(frame, sky_, inputs.light_index);
 }
 
 /// Places the VPLs of the first bounce, or candidates for them.

@@ -220,7 +220,7 @@ Result<void> VplEngine::render_at_once(Frame& frame) {
         LUCARNE_TRY(making_.look(frame, inputs(basis), basis));
         light_sky_ = making_.sky();
     }
-    views_ = light_views(frame, light_sky_);
+    views_ = light_views(frame, light_sky_, light_index_);
     light_gbuffers_.begin(frame.gl.device, views_, views_.size());
     if (!views_.empty())
         LUCARNE_TRY(
@@ -236,9 +236,7 @@ Result<void> VplEngine::render_at_once(Frame& frame) {
 
 /// Shows light of earlier frames where that of this one takes long, and makes new light meanwhile.
 Result<void> VplEngine::render_in_motion(Frame& frame) {
-    Frame sampled = frame;
-    sampled.index = light_index_;
-    views_ = light_views(sampled, light_sky_);
+    views_ = light_views(frame, light_sky_, light_index_);
     light_gbuffers_.begin(frame.gl.device, views_, 2 * views_.size());
     indirect_ = wants_indirect(frame.settings) && (!views_.empty() || emits(frame));
     if (indirect_) {

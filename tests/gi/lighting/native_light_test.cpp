@@ -120,7 +120,7 @@ class NativeLight : public OnDevice {
         radiance_ = *device->buffer(pixels_ * sizeof(glm::vec4), "radiance");
         with_frame([&](Frame& frame) {
             ASSERT_TRUE(upload_sky(frame, sky_));
-            views_ = light_views(frame, sky_.directions);
+            views_ = light_views(frame, sky_.directions, frame.index);
             shadows_.clear();
             for (const LightView& view : views_) {
                 shadows_.emplace_back();

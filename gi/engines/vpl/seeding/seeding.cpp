@@ -49,24 +49,24 @@ VplLight* nearest_clear(std::span<VplLight> lights, size_t i) {
 /// same surface, else to all. The sum stays the flux that lands, and so does the light of each patch: sun
 /// through a window lights a patch with a long border, while roofs have hardly any.
 void clear_rims(std::span<VplLight> lights) {
-    std::vector<double> gifts(lights.size());  // W
-    double all = 0, homeless = 0;
+    std::vector<double> received(lights.size());  // W
+    double all = 0, unassigned = 0;
     for (size_t i = 0; i < lights.size(); ++i) {
         all += power(lights[i]);
         if (clear(lights[i]) || !(power(lights[i]) > 0)) continue;
-        if (const VplLight* heir = nearest_clear(lights, i))
-            gifts[static_cast<size_t>(heir - lights.data())] += power(lights[i]);
+        if (const VplLight* nearest = nearest_clear(lights, i))
+            received[static_cast<size_t>(nearest - lights.data())] += power(lights[i]);
         else
-            homeless += power(lights[i]);
+            unassigned += power(lights[i]);
     }
-    const double shared = all > homeless ? all / (all - homeless) : 0.0;
+    const double shared = all > unassigned ? all / (all - unassigned) : 0.0;
     for (size_t i = 0; i < lights.size(); ++i) {
         VplLight& l = lights[i];
         if (!clear(l)) {
             l = kDeadLight;
             continue;
         }
-        const double own = power(l), grown = own > 0 ? 1 + gifts[i] / own : 1.0;
+        const double own = power(l), grown = own > 0 ? 1 + received[i] / own : 1.0;
         l.position.w *= static_cast<float>(grown);
         for (glm::vec4* flux : {&l.flux, &l.diffuse})
             for (int channel = 0; channel < 3; ++channel)

@@ -1,4 +1,4 @@
-// Runs after enter.comp, and again after splat.comp, and computes how many workgroups draw what they have queued.
+// Runs after enqueue.comp, and again after splat.comp, and computes how many workgroups draw what they have queued.
 layout(local_size_x = 1) in;
 
 #include "gi/engines/vpl/shadow_maps/queue.glsl"

@@ -1,4 +1,4 @@
-// The queues between meet.comp (culling), enter.comp (enqueueing), splat.comp and splat_large.comp, and the
+// The queues between cull.comp, enqueue.comp, splat.comp and splat_large.comp, and the
 // sizes that these shaders share with C++ (std430).
 #ifndef LUCARNE_GI_ENGINES_VPL_SHADOW_MAPS_QUEUE_H
 #define LUCARNE_GI_ENGINES_VPL_SHADOW_MAPS_QUEUE_H

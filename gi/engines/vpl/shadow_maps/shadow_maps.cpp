@@ -107,7 +107,7 @@ uint32_t queue_places(const Device& device) {
 }
 
 struct SplatPrograms {
-    const Program *meet, *enter, *plan, *draw, *draw_large;
+    const Program *cull, *enqueue, *plan, *draw, *draw_large;
 };
 
 /// Draws the surfels of a range of blocks into a range of maps, unless it has more pairs than the queue
@@ -115,16 +115,16 @@ struct SplatPrograms {
 void splat_range(const SplatPrograms& splat, const BlocksAndMaps& range, uint32_t queue,
                  const ShadowMaps& target) {
     const auto& [blocks, maps] = range;
-    for (const Program* program : {splat.enter, splat.plan, splat.draw, splat.draw_large})
+    for (const Program* program : {splat.enqueue, splat.plan, splat.draw, splat.draw_large})
         program->set("queue", queue);
-    splat.meet->set("first_block", blocks.first);
-    splat.meet->set("block_end", blocks.end);
-    splat.meet->set("map_end", maps.end);
-    splat.enter->set("first_block", blocks.first);
-    for (const Program* program : {splat.meet, splat.enter}) program->set("first_map", maps.first);
+    splat.cull->set("first_block", blocks.first);
+    splat.cull->set("block_end", blocks.end);
+    splat.cull->set("map_end", maps.end);
+    splat.enqueue->set("first_block", blocks.first);
+    for (const Program* program : {splat.cull, splat.enqueue}) program->set("first_map", maps.first);
     const size_t header = queue * sizeof(SplatQueue);
-    splat.meet->dispatch(blocks.end - blocks.first, kRunWords);
-    splat.enter->dispatch((blocks.end - blocks.first) * kBlockSurfels);
+    splat.cull->dispatch(blocks.end - blocks.first, kRunWords);
+    splat.enqueue->dispatch((blocks.end - blocks.first) * kBlockSurfels);
     splat.plan->dispatch(1);
     splat.draw->dispatch_indirect(target.queues, header + offsetof(SplatQueue, pair_groups));
     splat.plan->dispatch(1);
@@ -193,8 +193,8 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, con
                    ShadowMaps& target) {
     if (cut.blocks() == 0) return {};
     if (device.native_passes()) return splat_natively(cut, seeds, maps, target);
-    LUCARNE_ASSIGN(const Program* meet, device.program("gi/engines/vpl/shadow_maps/meet.comp"));
-    LUCARNE_ASSIGN(const Program* enter, device.program("gi/engines/vpl/shadow_maps/enter.comp"));
+    LUCARNE_ASSIGN(const Program* cull, device.program("gi/engines/vpl/shadow_maps/cull.comp"));
+    LUCARNE_ASSIGN(const Program* enqueue, device.program("gi/engines/vpl/shadow_maps/enqueue.comp"));
     LUCARNE_ASSIGN(const Program* plan, device.program("gi/engines/vpl/shadow_maps/plan.comp"));
     const Defines defines = source_defines(target);
     LUCARNE_ASSIGN(const Program* draw, device.program("gi/engines/vpl/shadow_maps/splat.comp", defines));
@@ -213,10 +213,10 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, con
     target.pairs.bind(kBindPairs);
     target.large.bind(kBindLarge);
     target.meetings.bind(kBindMeetings);
-    const SplatPrograms programs{meet, enter, plan, draw, draw_large};
-    for (const Program* program : {enter, plan}) program->set("places", places);
-    for (const Program* program : {meet, enter}) program->set("splat_angle", target.layout.splat_angle);
-    for (const Program* program : {enter, draw, draw_large}) program->set("cut_size", cut.size());
+    const SplatPrograms programs{cull, enqueue, plan, draw, draw_large};
+    for (const Program* program : {enqueue, plan}) program->set("places", places);
+    for (const Program* program : {cull, enqueue}) program->set("splat_angle", target.layout.splat_angle);
+    for (const Program* program : {enqueue, draw, draw_large}) program->set("cut_size", cut.size());
     for (const Program* program : {draw, draw_large}) {
         set_layout(*program, target.layout);
         program->set("id_bits", target.id_bits);

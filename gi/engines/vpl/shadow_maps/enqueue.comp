@@ -1,5 +1,5 @@
 // Enqueues the pairs of surfel and map that have to be drawn: a workgroup a block, an invocation a surfel. Each
-// surfel is tested against the maps for which meet.comp did not cull its block. Splatting without a queue would leave
+// surfel is tested against the maps for which cull.comp did not cull its block. Splatting without a queue would leave
 // most lanes idle.
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
 #include "gi/engines/vpl/lights.glsl"
