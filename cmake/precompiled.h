@@ -1,5 +1,5 @@
 // Precompiled for every target: headers that most files include anyway and that rarely change. Files still
-// include what they use: the tsan preset compiles each file of io and octree alone and without this header.
+// include what they use: tests/structure/alone compiles each without this header.
 #pragma once
 
 #include <algorithm>

@@ -152,8 +152,6 @@ Result<std::unique_ptr<Device>> Device::current() {
     info.version = gl_string(GL_VERSION);
     for (const char* name : {"llvmpipe", "softpipe", "SWR", "Software"})
         info.software = info.software || info.renderer.find(name) != std::string::npos;
-    info.atomic_int64 = epoxy_has_gl_extension("GL_NV_shader_atomic_int64") &&
-                        epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
     GLint64 bytes = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
     GLint texels = 0;

@@ -20,7 +20,6 @@ namespace lucarne::gi {
 struct DeviceInfo {
     std::string vendor, renderer, version;
     bool software = false;          ///< llvmpipe and the like, whose timer queries return wrong values
-    bool atomic_int64 = false;      ///< GL_NV_shader_atomic_int64
     uint64_t max_buffer_bytes = 0;  ///< largest shader storage block that also has texel views
     uint64_t max_texel_bytes = 0;   ///< largest buffer that shaders read only as texels of four words
 };
