@@ -173,9 +173,11 @@ std::vector<EstimatedStation> estimated_stations_of(const json& value,
     std::vector<EstimatedStation> stations;
     for (const auto& item : value) {
         const EstimatedStation station{index_of(item.at("scan"), scans.size()),
-                                       vector_of(item.at("position"))};
+                                       vector_of(item.at("position")), item.value("saw_all", false)};
         require(scans[station.scan].stations.empty(), "estimated stations of a scan that states its own");
         require(stations.empty() || stations.back().scan <= station.scan, "stations in a wrong order");
+        const bool alone = stations.empty() || stations.back().scan != station.scan;
+        require(alone || !(stations.back().saw_all || station.saw_all), "two stations, of which one saw all");
         for (int axis = 0; axis < 3; ++axis)
             require(std::abs(station.position[axis]) <= kFarthest, "a station too far from the origin");
         stations.push_back(station);
@@ -266,9 +268,11 @@ std::string metadata_text(const SourceHeader& header) {
     if (!header.options.empty()) root["options"] = header.options;
     if (!header.layouts.empty()) root["layouts"] = std::move(layouts);
     for (const auto& colour : header.station_colours) root["station_colours"].push_back(colour_json(colour));
-    for (const auto& station : header.estimated_stations)
-        root["estimated_stations"].push_back(
-            {{"scan", station.scan}, {"position", vector_json(station.position)}});
+    for (const auto& station : header.estimated_stations) {
+        auto& entry = root["estimated_stations"].emplace_back(
+            json{{"scan", station.scan}, {"position", vector_json(station.position)}});
+        if (station.saw_all) entry["saw_all"] = true;
+    }
     if (header.filling) root["filling"] = filling_json(*header.filling);
     // File names are bytes and not always UTF-8. Invalid sequences become U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);

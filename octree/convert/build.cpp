@@ -15,6 +15,7 @@
 #include "io/core/progress.h"
 #include "octree/colours/colour_survey.h"
 #include "octree/convert/build_inputs.h"
+#include "octree/convert/chunks/point_stations.h"
 #include "octree/convert/identity.h"
 #include "octree/convert/nodes/assembler.h"
 #include "octree/convert/nodes/build_listener.h"
@@ -99,21 +100,22 @@ Pass with_steps(const Pass& pass, Steps& steps, uint32_t stride) {
 }
 
 Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
-                               const MemoryPlan& memory, BuildListener* listener,
+                               const MemoryPlan& memory, BuildListener* listener, bool stations,
                                std::optional<CountGrid> counted) {
     LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", false));
-    ChunkStore store(std::move(file), inputs.schema(), facts.root);
+    ChunkStore store(std::move(file), inputs.schema(), facts.root, stations);
     const ThreadLimit readers(memory.readers);
     Steps steps(listener, "sorting into chunks", (counted ? 1 : 2) * facts.points);
-    const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
-    LUCARNE_TRY(store.fill(with_steps(pass, steps, inputs.schema().stride), facts.points, memory,
-                           std::move(counted)));
+    const Pass points = pass_over_inputs(inputs, memory.batch_bytes);
+    const Pass pass = stations ? with_point_stations(points, inputs.schema(), facts.spans) : points;
+    LUCARNE_TRY(
+        store.fill(with_steps(pass, steps, store.schema().stride), facts.points, memory, std::move(counted)));
     return store;
 }
 Result<ChunkStore> kept_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
-                               std::span<const std::byte> record) {
+                               bool stations, std::span<const std::byte> record) {
     LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", true));
-    return ChunkStore::restore(std::move(file), inputs.schema(), facts.root, record);
+    return ChunkStore::restore(std::move(file), inputs.schema(), facts.root, stations, record);
 }
 
 Result<SurfaceStore> find_surface(const Workspace& work, const ChunkStore& store,
@@ -206,20 +208,28 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     if (options.listener)
         options.listener->scanned(bare,
                                   normals ? with_estimates(inputs.schema(), *normals) : inputs.schema());
+    // Only the search for normals uses the stations of points.
+    const bool stations = normals && !facts.spans.empty();
     LUCARNE_ASSIGN(
         ChunkStore store, timed(report, "chunk", [&] {
             return resumable(
-                work, "chunk", [&](const auto& record) { return kept_chunks(work, inputs, facts, record); },
+                work, "chunk",
+                [&](const auto& record) { return kept_chunks(work, inputs, facts, stations, record); },
                 [&] {
-                    return fill_chunks(work, inputs, facts, memory, options.listener, std::move(counted));
+                    return fill_chunks(work, inputs, facts, memory, options.listener, stations,
+                                       std::move(counted));
                 });
         }));
     std::optional<SurfaceStore> surface;
     if (normals) {
         Steps steps(options.listener, "normals", facts.points);
-        const SurfaceStore::Settings settings{
-            *normals, options.neighbours, options.neighbour_search,
-            threads,  options.memory,     [&](uint64_t points) { return steps.add(points); }};
+        const SurfaceStore::Settings settings{*normals,
+                                              options.neighbours,
+                                              options.neighbour_search,
+                                              threads,
+                                              options.memory,
+                                              facts.stations,
+                                              [&](uint64_t points) { return steps.add(points); }};
         LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
                            return resumable(
                                work, "normals",

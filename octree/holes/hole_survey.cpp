@@ -84,7 +84,7 @@ class SampleReader {
         : header_(header),
           normals_(header.schema),
           colours_(header),
-          ids_(header.scans, header.schema),
+          ids_(header.scans, header.schema, header.estimated_stations),
           area_(header.schema.find(io::names::area)),
           unit_(header.metres_per_unit) {
         for (const glm::dvec3& station : ids_.stations())

@@ -101,11 +101,7 @@ std::optional<double> height_of(const std::vector<Profile>& profiles) {
 
 bool from_all_around(const std::vector<ScanLine>& lines, const Meeting& meeting) {
     std::bitset<kDirections> seen;
-    for (const uint32_t line : meeting.lines) {
-        const glm::dvec2& along = lines[line].along;
-        const double turn = std::atan2(along.y, along.x) / M_PI + 1;  // the same for opposite directions
-        seen.set(static_cast<size_t>((turn - std::floor(turn)) * kDirections) % kDirections);
-    }
+    for (const uint32_t line : meeting.lines) seen.set(direction_of(lines[line], kDirections));
     return seen.count() >= kLeastDirections;
 }
 

@@ -51,6 +51,17 @@ std::vector<ScanLine> scan_lines(const ScanRuns& runs, double metres_per_unit) {
     return lines;
 }
 
+bool passes(const ScanLine& line, const glm::dvec2& place) {
+    const double distance = glm::length(line.centre - place);
+    const double reached = std::min(kWidest, std::max(kPasses, 2 * line.error * distance));
+    return distance < kFarthest && std::abs(glm::dot(line.across(), line.centre - place)) < reached;
+}
+
+size_t direction_of(const ScanLine& line, size_t count) {
+    const double turn = std::atan2(line.along.y, line.along.x) / M_PI + 1;  // equal for opposite directions
+    return static_cast<size_t>((turn - std::floor(turn)) * static_cast<double>(count)) % count;
+}
+
 LineMeetings::LineMeetings(const std::vector<ScanLine>& lines) : lines_(lines), taken_(lines.size()) {
     // Pairs at steps of all sizes: one station's lines follow each other in the file, more or less closely.
     for (size_t step = 1, larger = 2; step < lines.size();
@@ -119,14 +130,8 @@ Meeting LineMeetings::refined(const glm::dvec2& start) const {
         place += glm::dvec2(yy * x - xy * y, xx * y - xy * x) / determinant;
     }
     Meeting meeting{place, {}};
-    for (size_t i = 0; i < lines_.size(); ++i) {
-        const ScanLine& line = lines_[i];
-        const double distance = glm::length(line.centre - place);
-        const double reached = std::min(kWidest, std::max(kPasses, 2 * line.error * distance));
-        if (!taken_[i] && distance < kFarthest &&
-            std::abs(glm::dot(line.across(), line.centre - place)) < reached)
-            meeting.lines.push_back(static_cast<uint32_t>(i));
-    }
+    for (size_t i = 0; i < lines_.size(); ++i)
+        if (!taken_[i] && passes(lines_[i], place)) meeting.lines.push_back(static_cast<uint32_t>(i));
     return meeting;
 }
 

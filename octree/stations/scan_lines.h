@@ -23,6 +23,13 @@ struct ScanLine {
 /// Returns the runs whose points lie in one vertical plane, and far enough apart to tell its direction.
 std::vector<ScanLine> scan_lines(const ScanRuns& runs, double metres_per_unit);
 
+/// Whether a line passes a place on the ground (m, relative to ScanRuns::origin()), as exactly as its points
+/// tell its direction.
+bool passes(const ScanLine& line, const glm::dvec2& place);
+
+/// Returns which of `count` equal sectors of a half circle has the line's direction.
+size_t direction_of(const ScanLine& line, size_t count);
+
 /// A place through which many lines pass.
 struct Meeting {
     glm::dvec2 place{0.0};

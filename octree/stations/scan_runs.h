@@ -26,6 +26,10 @@ class ScanRuns {
     std::span<const glm::vec3> run(size_t index) const {
         return {points_.data() + index * kRunPoints, kRunPoints};
     }
+    /// The index of a run's first point in the scan.
+    uint64_t first_point(size_t index) const { return index * stride_ * kRunPoints; }
+    /// Number of points added so far.
+    uint64_t points() const { return seen_; }
     /// The scan's first point.
     const glm::dvec3& origin() const { return origin_; }
 

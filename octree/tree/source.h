@@ -62,6 +62,7 @@ struct FillingSection {
 struct EstimatedStation {
     uint32_t scan = 0;         ///< index in SourceHeader::scans
     glm::dvec3 position{0.0};  ///< in the coordinates of the points
+    bool saw_all = false;      ///< it saw all points of the scan, whose only station it is
     bool operator==(const EstimatedStation&) const = default;
 };
 inline constexpr size_t kMostEstimatedStations = 1024;

@@ -76,8 +76,8 @@ class Dealer {
 }  // namespace
 
 Result<ChunkStore> ChunkStore::restore(ScratchFile file, const io::Schema& schema, const Cube& root,
-                                       std::span<const std::byte> record) {
-    ChunkStore store(std::move(file), schema, root);
+                                       bool stations, std::span<const std::byte> record) {
+    ChunkStore store(std::move(file), schema, root, stations);
     ByteReader reader(record);
     store.chunks_ = reader.get_all<Chunk>();
     store.dealt_ = reader.get_all<Chunk>();

@@ -15,16 +15,24 @@ using Visit = std::function<Result<void>(std::span<const std::byte> records)>;
 /// Calls its argument with all records of a source, in order, piece by piece. Can be called repeatedly.
 using Pass = std::function<Result<void>(const Visit&)>;
 
+/// Bytes behind each record of a ChunkStore with stations: u16, 1 + the index of the estimated station that
+/// saw the point, 0 if unknown.
+inline constexpr uint32_t kStationBytes = 2;
+
 /// The points of a build, sorted into chunks in one scratch file. Within a chunk they keep the order of the
 /// input, so that nothing depends on timing.
 class ChunkStore {
  public:
-    ChunkStore(ScratchFile file, const io::Schema& schema, const Cube& root)
-        : file_(std::move(file)), schema_(schema), root_(root) {}
+    /// `schema` is that of the points. `stations`: their records are followed by kStationBytes
+    /// (point_stations.h).
+    ChunkStore(ScratchFile file, const io::Schema& schema, const Cube& root, bool stations = false)
+        : file_(std::move(file)), points_schema_(schema), schema_(schema), root_(root) {
+        if (stations) schema_.stride += kStationBytes;
+    }
     /// Restores a store whose scratch file still exists from the record that `save` made. Errors: the file's
     /// points have changed.
     static Result<ChunkStore> restore(ScratchFile file, const io::Schema& schema, const Cube& root,
-                                      std::span<const std::byte> record);
+                                      bool stations, std::span<const std::byte> record);
     std::vector<std::byte> save() const;
 
     /// Sorts `points` points into chunks. Runs the pass twice: to count the points and to distribute them.
@@ -41,7 +49,14 @@ class ChunkStore {
     /// In Morton order. A chunk has more than MemoryPlan::chunk_points points only where the Morton code is
     /// exhausted.
     std::span<const Chunk> chunks() const { return chunks_; }
+    /// Of the records. Its stride includes the kStationBytes of a store with stations.
     const io::Schema& schema() const { return schema_; }
+    const io::Schema& points_schema() const { return points_schema_; }
+    /// Returns the index of the estimated station that saw a point, -1 if unknown.
+    int32_t estimated_station(const std::byte* record) const {
+        if (schema_.stride == points_schema_.stride) return -1;
+        return int32_t{io::load<uint16_t>(record + points_schema_.stride)} - 1;
+    }
     const Cube& root() const { return root_; }
     /// Returns the points [first, first + count) of a chunk.
     Result<std::vector<std::byte>> load(size_t chunk, uint64_t first, uint64_t count) const;
@@ -59,7 +74,7 @@ class ChunkStore {
     Pass pass_over(const Chunk& chunk, const MemoryPlan& memory);
 
     ScratchFile file_;
-    io::Schema schema_;
+    io::Schema points_schema_, schema_;
     Cube root_;
     std::vector<Chunk> chunks_;
     std::vector<Chunk> dealt_;  ///< the chunks as written, before those of one place were divided

@@ -23,9 +23,10 @@ io::Schema with_estimates(io::Schema schema, bool normals) {
 RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals)
     : chunks_(chunks),
       surface_(surface),
-      schema_(surface && !chunks.schema().find(io::names::area) ? with_estimates(chunks.schema(), normals)
-                                                                : chunks.schema()),
-      splats_(chunks_.schema()),
+      schema_(surface && !chunks.schema().find(io::names::area)
+                  ? with_estimates(chunks.points_schema(), normals)
+                  : chunks.points_schema()),
+      splats_(chunks_.points_schema()),
       drawn_normals_(schema_),
       normal_(schema_.find(io::names::normal_oct)),
       area_(schema_.find(io::names::area)),
@@ -46,16 +47,19 @@ void RecordLoader::put_edge(const SurfaceStore::Point& found, std::byte* record)
 
 Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, uint64_t count) const {
     LUCARNE_ASSIGN(auto input, chunks_.load(chunk, first, count));
-    if (!surface_) return input;
+    if (!surface_) {
+        assert(chunks_.schema().stride == schema_.stride);  // only the search for normals uses stations
+        return input;
+    }
     LUCARNE_ASSIGN(const auto found, surface_->load(chunk, first, count));
     assert(area_ && found.size() == count);
-    const uint32_t stride = chunks_.schema().stride;
-    const bool in_place = stride == schema_.stride;
+    const uint32_t stride = chunks_.schema().stride, kept = chunks_.points_schema().stride;
+    const bool in_place = kept == schema_.stride;
     std::vector<std::byte> records(count * schema_.stride);
     const double face = root().first_size() * root().first_size();
     for (size_t i = 0; i < count; ++i) {
         std::byte* record = &records[i * schema_.stride];
-        std::memcpy(record, &input[i * stride], stride);
+        std::memcpy(record, &input[i * stride], kept);
         if (normal_ && (!in_place || io::load<NormalCode>(record + normal_->offset) == kNoNormal))
             io::store(record + normal_->offset, encode_normal(splats_.normal(record, found[i].normal)));
         const float area = splats_.area(record, found[i].area, face);

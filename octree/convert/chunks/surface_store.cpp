@@ -23,8 +23,9 @@ constexpr float kMostStray = 0.5f;
 /// Shows the chunks and stations of a build to the estimator.
 class Access final : public ChunkAccess {
  public:
-    Access(const ChunkStore& store, const std::vector<io::ScanInfo>& scans)
-        : store_(store), ids_(scans, store.schema()) {}
+    Access(const ChunkStore& store, const std::vector<io::ScanInfo>& scans,
+           std::span<const EstimatedStation> estimated)
+        : store_(store), ids_(scans, store.schema(), estimated) {}
 
     const std::vector<glm::dvec3>& all_stations() const { return ids_.stations(); }
 
@@ -54,11 +55,17 @@ class Access final : public ChunkAccess {
         std::vector<int32_t> result;
         result.reserve(point_count(chunk));
         LUCARNE_TRY(
-            for_each_record(chunk, [&](const std::byte* record) { result.push_back(ids_.of(record)); }));
+            for_each_record(chunk, [&](const std::byte* record) { result.push_back(station_of(record)); }));
         return result;
     }
 
  private:
+    int32_t station_of(const std::byte* record) const {
+        if (const int32_t station = ids_.of(record); station >= 0) return station;
+        const int32_t estimated = store_.estimated_station(record);
+        return estimated < 0 ? -1 : static_cast<int32_t>(ids_.stated()) + estimated;
+    }
+
     /// Reads in pieces, because records may be many times as wide as the fields that are used.
     template <typename Use>
     Result<void> for_each_record(size_t chunk, const Use& use) const {
@@ -80,7 +87,7 @@ class Access final : public ChunkAccess {
 Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std::vector<io::ScanInfo>& scans,
                                             ScratchFile file, const Settings& settings) {
     SurfaceStore store(std::move(file), chunks);
-    const Access access(chunks, scans);
+    const Access access(chunks, scans, settings.estimated_stations);
     NormalOptions options;
     options.neighbours = settings.neighbours;
     options.search = settings.search;

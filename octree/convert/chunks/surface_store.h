@@ -24,6 +24,8 @@ class SurfaceStore {
         NeighbourSearch search = NeighbourSearch::leaf;
         unsigned threads = 0;
         uint64_t memory = 0;
+        /// Which of them saw a point, the chunks tell, or that one saw all of the scan.
+        std::vector<EstimatedStation> estimated_stations{};
         /// Called with numbers of finished points; its error ends the stage.
         std::function<Result<void>(uint64_t points)> step;
     };

@@ -51,9 +51,18 @@ std::string get_text(ByteReader& reader) {
 
 /// Adds the stations that an input's points show.
 void add_stations(ScanFacts& facts, size_t input, const io::ScanInfo& info, const ScanRuns& runs) {
-    for (const glm::dvec3& position : find_stations(runs, info.metres_per_unit))
-        if (facts.stations.size() < kMostEstimatedStations)
-            facts.stations.push_back({static_cast<uint32_t>(input), position});
+    auto found = find_stations(runs, info.metres_per_unit);
+    found.resize(std::min(found.size(), kMostEstimatedStations - facts.stations.size()));
+    auto spans = station_spans(runs, found, info.metres_per_unit);
+    const bool all = found.size() == 1 && saw_all(runs, spans);
+    const auto scan = static_cast<uint32_t>(input), before = static_cast<uint32_t>(facts.stations.size());
+    for (const glm::dvec3& position : found) facts.stations.push_back({scan, position, all});
+    if (all) return;
+    for (StationSpan& span : spans) {
+        span.scan = scan;
+        span.station += before;
+        facts.spans.push_back(span);
+    }
 }
 
 }  // namespace
@@ -93,7 +102,9 @@ std::vector<std::byte> ScanFacts::save() const {
     for (const auto& station : stations) {
         writer.put(station.scan);
         writer.put(station.position);
+        writer.put(uint8_t{station.saw_all});
     }
+    writer.put_all(spans);
     return writer.take();
 }
 Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
@@ -119,8 +130,10 @@ Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
     }
     for (auto left = reader.get<uint64_t>(); left > 0 && reader.sound(); --left) {
         const auto scan = reader.get<uint32_t>();
-        facts.stations.push_back({scan, reader.get<glm::dvec3>()});
+        const auto position = reader.get<glm::dvec3>();
+        facts.stations.push_back({scan, position, reader.get<uint8_t>() != 0});
     }
+    facts.spans = reader.get_all<StationSpan>();
     if (!reader.sound()) return failed("scan", "has an incomplete record");
     return facts;
 }

@@ -3,6 +3,7 @@
 #include "io/formats/scan.h"
 #include "octree/convert/chunks/chunk_store.h"
 #include "octree/convert/scans/unify.h"
+#include "octree/stations/station_spans.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {
@@ -17,6 +18,8 @@ struct ScanFacts {
     std::vector<io::Contents> inputs;
     /// Stations of inputs that state none; `scan` is the input's index. At most kMostEstimatedStations.
     std::vector<EstimatedStation> stations;
+    /// Which parts of the inputs they saw; sorted. Inputs of which one station saw all have none here.
+    std::vector<StationSpan> spans;
 
     std::vector<std::byte> save() const;
     static Result<ScanFacts> restore(std::span<const std::byte> record);

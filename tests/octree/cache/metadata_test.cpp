@@ -70,7 +70,7 @@ SourceHeader with_stations() {
     SourceHeader header;
     header.scans.resize(3);
     header.scans[1].stations = {{1, {1, 2, 3}}};
-    header.estimated_stations = {{0, {1.1, -2, 1e6}}, {0, {0, 0, .1}}, {2, {4, 5, 6}}};
+    header.estimated_stations = {{0, {1.1, -2, 1e6}}, {0, {0, 0, .1}}, {2, {4, 5, 6}, true}};
     return header;
 }
 
@@ -96,7 +96,9 @@ TEST(Metadata, RejectsImpossibleEstimatedStations) {
     EXPECT_TRUE(rejects([](auto& stations) { stations[2].scan = 3; })) << "there are three";
     EXPECT_TRUE(rejects([](auto& stations) { stations[1].scan = 1; })) << "it states its own";
     EXPECT_TRUE(rejects([](auto& stations) { std::swap(stations[0], stations[2]); })) << "not sorted";
-    EXPECT_TRUE(rejects([](auto& stations) { stations.resize(1025, stations[2]); })) << "too many";
+    EXPECT_TRUE(rejects([](auto& stations) { stations[0].saw_all = true; })) << "there is a second one";
+    EXPECT_TRUE(rejects([](auto& stations) { stations[1].saw_all = true; })) << "there is a second one";
+    EXPECT_TRUE(rejects([](auto& stations) { stations.resize(1025, {2, {4, 5, 6}, false}); })) << "too many";
     std::string text = metadata_text(with_stations());
     text.replace(text.find("\"estimated_stations\": ["), 23, "\"estimated_stations\": 7, \"x\": [");
     EXPECT_FALSE(parse_metadata("cache.luc", text)) << "no list";

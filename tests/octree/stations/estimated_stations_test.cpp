@@ -93,11 +93,13 @@ TEST(EstimatedStations, StayWhenScansAreAppended) {
 
 TEST(EstimatedStations, AreRestoredWhenAConversionIsResumed) {
     ScanFacts facts;
-    facts.stations = {{0, {1, 2, 3.25}}, {2, {-4, 5, 1e6}}};
+    facts.stations = {{0, {1, 2, 3.25}}, {1, {2, 3, 4}, true}, {2, {-4, 5, 1e6}}};
+    facts.spans = {{0, 0, 64, 1ull << 40}, {2, 2, 0, 128}};
     const auto record = facts.save();
     const auto restored = ScanFacts::restore(record);
     ASSERT_TRUE(restored);
     EXPECT_EQ(restored->stations, facts.stations);
+    EXPECT_EQ(restored->spans, facts.spans);
     EXPECT_FALSE(ScanFacts::restore(std::span(record).first(record.size() - 1)));
 }
 

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "octree/convert/chunks/chunk_store.h"
+#include "octree/stations/station_spans.h"
+
+namespace lucarne::octree {
+
+/// Returns a pass that appends to each record which estimated station saw the point (kStationBytes, for a
+/// ChunkStore with stations). `schema` is that of the records of `pass`. `spans`: parts of the scans; a scan
+/// is what the attribute `scan` says, or 0 without it, and its points come in its order.
+Pass with_point_stations(Pass pass, const io::Schema& schema, const std::vector<StationSpan>& spans);
+
+}  // namespace lucarne::octree
