@@ -131,6 +131,18 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
     return header;
 }
 
+/// Returns the parts of the new scans that estimated stations saw, counted as in `header`.
+std::vector<StationSpan> added_spans(const SourceHeader& before, const SourceHeader& header,
+                                     const ScanFacts& facts) {
+    std::vector<StationSpan> spans;
+    for (StationSpan span : facts.spans) {
+        span.scan += static_cast<uint32_t>(before.scans.size() - 1);
+        span.station += static_cast<uint32_t>(before.estimated_stations.size());
+        if (span.station < header.estimated_stations.size()) spans.push_back(span);
+    }
+    return spans;
+}
+
 std::string file_name(const io::ScanInfo& scan) {
     return std::filesystem::path(scan.path).filename().string();
 }
@@ -212,6 +224,7 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
             facts.without_normal);
     Change change;
     LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));
+    change.spans = added_spans(before, change.header, facts);
     change.added = added_points(inputs, change.header.schema, before.scans.size(), kBatchBytes);
     LUCARNE_ASSIGN(change.changed, count_by_node(*opened.cache, change.header, change.added));
     LUCARNE_ASSIGN(EditReport report, rewrite(std::move(opened), change, options));

@@ -9,12 +9,14 @@
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
 #include "octree/colours/colour_survey.h"
+#include "octree/convert/chunks/point_stations.h"
 #include "octree/convert/nodes/assembler.h"
 #include "octree/convert/nodes/in_order.h"
 #include "octree/edit/edit_plan.h"
 #include "octree/holes/hole_survey.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/radix_sort.h"
+#include "octree/tree/station_ids.h"
 
 namespace lucarne::octree {
 namespace {
@@ -127,9 +129,11 @@ Result<void> Rewrite::deal() {
     };
     LUCARNE_ASSIGN(ScratchFile rebuilt_file, ScratchFile::create(folder_));
     LUCARNE_ASSIGN(ScratchFile kept_file, ScratchFile::create(folder_));
-    rebuilt_.emplace(std::move(rebuilt_file), schema(), change_.header.root);
+    const bool stations = schema().find(io::names::area) && !change_.spans.empty();
+    rebuilt_.emplace(std::move(rebuilt_file), schema(), change_.header.root, stations);
     kept_.emplace(std::move(kept_file), schema(), change_.header.root);
-    LUCARNE_TRY(rebuilt_->fill(rebuilt, keys(plan_.rebuilt), true, memory_));
+    LUCARNE_TRY(rebuilt_->fill(stations ? with_point_stations(rebuilt, schema(), change_.spans) : rebuilt,
+                               keys(plan_.rebuilt), true, memory_));
     LUCARNE_TRY(kept_->fill(kept, keys(plan_.kept), false, memory_));
     uint64_t points = 0;
     for (const auto& chunk : rebuilt_->chunks()) points += chunk.count;
@@ -153,7 +157,8 @@ Result<void> Rewrite::find_surface() {
                                           .neighbours = options_.neighbours,
                                           .search = options_.neighbour_search,
                                           .threads = threads_,
-                                          .memory = options_.memory};
+                                          .memory = options_.memory,
+                                          .estimated_stations = change_.header.estimated_stations};
     LUCARNE_ASSIGN(surface_,
                    SurfaceStore::estimate(*rebuilt_, change_.header.scans, std::move(file), settings));
     return normals ? align_normals() : Result<void>{};
@@ -161,11 +166,17 @@ Result<void> Rewrite::find_surface() {
 
 /// Aligns new normals with the old ones around them, which were oriented when more of the surface was known.
 /// Each component is flipped if most of its old points say so; components without old points follow all of
-/// them together.
+/// them together. Those that a station saw face it already, whatever old points that no station saw say.
 Result<void> Rewrite::align_normals() {
     const auto* attribute = schema().find(io::names::normal_oct);
-    const uint64_t piece = std::max<uint64_t>(1, memory_.batch_bytes / schema().stride);
-    std::vector<std::map<uint32_t, int64_t>> votes(rebuilt_->chunks().size());
+    const uint32_t stride = rebuilt_->schema().stride;
+    const uint64_t piece = std::max<uint64_t>(1, memory_.batch_bytes / stride);
+    struct Vote {
+        int64_t balance = 0;
+        bool seen = false;  ///< a station saw points of it
+    };
+    const StationIds ids(change_.header.scans, rebuilt_->schema(), change_.header.estimated_stations);
+    std::vector<std::map<uint32_t, Vote>> votes(rebuilt_->chunks().size());
     int64_t all = 0;
     for (size_t chunk = 0; chunk < votes.size(); ++chunk) {
         const uint64_t count = rebuilt_->chunks()[chunk].count;
@@ -175,18 +186,21 @@ Result<void> Rewrite::align_normals() {
             LUCARNE_ASSIGN(const auto found, surface_->load(chunk, first, part));
             for (size_t i = 0; i < part; ++i) {
                 auto& vote = votes[chunk][found[i].component];
-                const auto old =
-                    decode_normal(io::load<NormalCode>(&records[i * schema().stride + attribute->offset]));
+                const std::byte* record = &records[i * stride];
+                const auto old = decode_normal(io::load<NormalCode>(record + attribute->offset));
+                if (found[i].normal != glm::vec3(0.0f) && !vote.seen)
+                    vote.seen = ids.of(record) >= 0 || rebuilt_->estimated_station(record) >= 0;
                 if (!old || found[i].normal == glm::vec3(0.0f)) continue;
                 const int side = glm::dot(*old, found[i].normal) < 0 ? -1 : 1;
-                vote += side;
+                vote.balance += side;
                 all += side;
             }
         }
     }
     for (size_t chunk = 0; chunk < votes.size(); ++chunk)
         for (const auto& [component, vote] : votes[chunk])
-            if (vote < 0 || (vote == 0 && all < 0)) surface_->turn(chunk, component);
+            if (!vote.seen && (vote.balance < 0 || (vote.balance == 0 && all < 0)))
+                surface_->turn(chunk, component);
     return {};
 }
 

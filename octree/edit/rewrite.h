@@ -7,6 +7,7 @@
 #include "octree/cache/file.h"
 #include "octree/convert/chunks/chunk_store.h"
 #include "octree/edit/edit.h"
+#include "octree/stations/station_spans.h"
 
 namespace lucarne::octree {
 
@@ -16,6 +17,8 @@ struct Change {
     /// Points that are added or removed, by the deepest old node that contains them.
     std::vector<uint64_t> changed;
     Pass added;  ///< the new points in the new schema; may be empty
+    /// Which of the header's estimated stations saw which parts of the new scans.
+    std::vector<StationSpan> spans;
     /// Decides over an old record in the new schema; may be empty.
     std::function<bool(const std::byte*)> removed;
 };

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "io/core/random.h"
 #include "io/synthetic/synthetic.h"
 #include "octree/cache/cache.h"
 #include "octree/convert/build.h"
@@ -59,12 +60,14 @@ struct SurfaceScore {
         return static_cast<double>(flipped) / static_cast<double>(std::max<uint64_t>(1, with_normal));
     }
 };
-inline SurfaceScore score_of(const octree::NodeSource& cache) {
+/// `scan`: the one whose points count, of a cache with several.
+inline SurfaceScore score_of(const octree::NodeSource& cache, uint16_t scan = 0) {
     SurfaceScore score;
     const auto& schema = cache.header().schema;
     const auto* truth = schema.find(octree::kReplacedNormals);
     const auto* found = schema.find(io::names::normal_oct);
     const auto* area = schema.find(io::names::area);
+    const auto* of_scan = schema.find(io::names::scan);
     EXPECT_TRUE(truth && found && area);
     if (!truth || !found || !area) return score;
     for (uint32_t node = 0; node < cache.nodes().size(); ++node) {
@@ -72,6 +75,7 @@ inline SurfaceScore score_of(const octree::NodeSource& cache) {
         EXPECT_TRUE(data);
         for (size_t i = 0; data && i < data->count; ++i) {
             const std::byte* record = &data->records[i * schema.stride];
+            if (of_scan && io::load<uint16_t>(record + of_scan->offset) != scan) continue;
             const auto right = io::load<glm::vec3>(record + truth->offset);
             const auto normal = octree::decode_normal(io::load<octree::NormalCode>(record + found->offset));
             const bool least =
@@ -82,6 +86,29 @@ inline SurfaceScore score_of(const octree::NodeSource& cache) {
         }
     }
     return score;
+}
+
+/// The points of a scan in random order.
+inline std::unique_ptr<io::PointSource> shuffled(const io::PointSource& scan) {
+    const size_t stride = scan.schema().stride;
+    std::vector<std::byte> records;
+    auto reader = scan.open();
+    io::PointBatch batch;
+    while (reader && (*reader)->read(batch, 65536).value_or(0) > 0)
+        records.insert(records.end(), batch.bytes.begin(),
+                       batch.bytes.begin() + static_cast<ptrdiff_t>(batch.count * stride));
+    const size_t count = records.size() / stride;
+    std::vector<size_t> order(count);
+    for (size_t i = 0; i < count; ++i) {
+        const size_t other = Random(11, i).next() % (i + 1);
+        order[i] = order[other];
+        order[other] = i;
+    }
+    return std::make_unique<ComputedSource>(
+        scan.schema(), count,
+        [records = std::move(records), order = std::move(order), stride](uint64_t index, std::byte* record) {
+            std::memcpy(record, &records[order[index] * stride], stride);
+        });
 }
 
 /// Converts scans with estimated normals.
