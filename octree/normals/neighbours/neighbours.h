@@ -91,8 +91,7 @@ class ChunkNeighbours {
 class ChunkNeighbours::Surroundings {
  public:
     /// `halo`: the radius within which the halo holds all points; 0: no halo yet.
-    Surroundings(const ChunkNeighbours& neighbours, double halo)
-        : Surroundings(neighbours, halo, halo) {}
+    Surroundings(const ChunkNeighbours& neighbours, double halo) : Surroundings(neighbours, halo, halo) {}
     /// The same, where the search is given up: `halo` is taken for known, and only `certain` is.
     Surroundings(const ChunkNeighbours& neighbours, double halo, double certain)
         : of_(neighbours), halo_(halo), certain_(certain) {}

@@ -227,8 +227,10 @@ class SiteEstimator {
     /// Decides about a site whose neighbours are not all known, only those within `certain`. It stays without
     /// a surface, and is an outlier if those that are known say so and it is far from all others.
     void give_up(uint32_t site, const Patch& known, double certain) {
-        if (known.count < usual_ || certain < kSparse * step_near(site)) return;
-        if (is_stray(known, usual_, true)) leave_out(site);
+        const double sparse = kSparse * step_near(site);
+        if (known.count < usual_ || certain < sparse) return;
+        const bool far = known.distance2[1] > 4 * sparse * sparse;
+        if (far || is_stray(known, usual_, true)) leave_out(site);
     }
     std::span<const uint32_t> apart() const { return apart_; }
     std::span<const SideNormal> sides() const { return sides_; }

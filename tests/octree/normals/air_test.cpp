@@ -174,6 +174,30 @@ TEST(Air, GroupsAroundACordAreDots) {
     EXPECT_NEAR(drawn(found, 0, first).area, 4, .08);
 }
 
+/// With little memory the halo of a chunk ends before the neighbours of a point in the middle of a room.
+TEST(Air, LonePointsAreOutliersWhereNotAllNeighboursAreKnown) {
+    Random random(19);
+    Cloud cloud;
+    const glm::dvec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2);
+    for (const auto& corner : {glm::dvec3(0), glm::dvec3(0, 0, 2)})
+        add_wall(cloud, corner, x, y, 0.02, random);
+    for (const auto& corner : {glm::dvec3(0), glm::dvec3(0, 2, 0)})
+        add_wall(cloud, corner, x, z, 0.02, random);
+    for (const auto& corner : {glm::dvec3(0), glm::dvec3(2, 0, 0)})
+        add_wall(cloud, corner, y, z, 0.02, random);
+    const size_t first = cloud.points.size();
+    for (int i = 0; i < 8; ++i) cloud.points.push_back(0.77 + 0.5 * glm::dvec3(i & 1, i >> 1 & 1, i >> 2));
+    cloud.normals.resize(cloud.points.size());
+    cloud.stations.resize(cloud.points.size());
+    NormalOptions options;
+    options.memory = 1 << 20;
+    const Estimate found = estimate(cloud, options, 2);
+    for (size_t i = first; i < cloud.points.size(); ++i) EXPECT_EQ(found.areas[i], kStrayArea) << i - first;
+    size_t lost = 0;
+    for (size_t i = 0; i < first; ++i) lost += found.areas[i] == kStrayArea;
+    EXPECT_LE(lost, 3u) << "of the walls";
+}
+
 /// Every share of hostile clouds is finite, and no disc is wider than the cloud.
 TEST(Air, HostileCloudsAreDefined) {
     Random random(16);
