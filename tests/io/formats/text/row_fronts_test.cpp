@@ -1,4 +1,6 @@
 // Parts of text files can be read without the rows before them, and together hold every row once.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "io/core/random.h"
