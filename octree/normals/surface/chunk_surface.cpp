@@ -46,6 +46,9 @@ constexpr double kVerySparse = 24, kFarWindow = 4;
 /// If the window of such a site holds this many times what a surface of the site's own density has there, the
 /// site is crowded. Within a sheet the number is 1.
 constexpr float kCrowded = 8;
+/// Of a site that is more crowded than this, the whole window is asked whether its disc has earned its size.
+/// Sites of a sparse wall above a dense floor are less crowded.
+constexpr float kVeryCrowded = 16;
 /// A very sparse site that is more crowded than this is an outlier.
 constexpr float kMostCrowded = 64;
 /// A disc at an outer edge ends that many spacings beyond the line where the two planes meet, and by this
@@ -203,7 +206,7 @@ class SiteEstimator {
         if (wide || apart || sparser > kThin) {
             // What crowds a site may be farther away than its disc reaches.
             const double look = std::max(double{kEarnedLook * surfel_radius(area, 0)},
-                                         crowding > kCrowded ? kWindow * reach : 0.0);
+                                         crowding > kVeryCrowded ? kWindow * reach : 0.0);
             if (!around.knows(look)) return look;
             const float earned = earned_at(around, look, fit.normal, area, sparser > kThin);
             if (apart && earned < area) return leave_out(site);
