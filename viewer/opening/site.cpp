@@ -26,7 +26,7 @@ constexpr int kThin = 3;  ///< cells
 /// Metres between the places that are known of a scan with gaps, beyond which it is not said to be one of
 /// rooms. People do not pass through such gaps.
 constexpr double kWidestGap = .5;
-constexpr double kCoarser = 1.25;
+constexpr double kCoarser = 1.5;
 
 struct CoarsePoints {
     std::vector<glm::dvec3> positions;  ///< world units

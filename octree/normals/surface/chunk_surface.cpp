@@ -261,7 +261,7 @@ class SiteEstimator {
     float earned_at(ChunkNeighbours::Surroundings& around, double look, const glm::vec3& normal, float area,
                     bool sparse) {
         const auto view = around.around(look);
-        return earned_area(view.tile, view.centre, static_cast<float>(std::min(look, view.radius)),
+        return earned_area(view.tile, view.centre, static_cast<float>(view.radius),
                            {normal, surfel_radius(area, 0), sparse});
     }
 
