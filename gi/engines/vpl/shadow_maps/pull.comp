@@ -1,5 +1,4 @@
-// Pull: computes one level of the pyramid of every map from the level below (after Marroquim, Kraus, Cavalcanti
-// 2007).
+// Pull: computes half the resolution of every map (after Marroquim, Kraus, Cavalcanti 2007).
 //
 // A coarse texel represents the nearest sheet among its 2 x 2 children if at least three of them lie within the depth
 // interval [d, d + 2 r] of the nearest. A fourth child that is empty or deeper is then a hole between splats. Two
@@ -12,11 +11,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
     uint map = gl_GlobalInvocationID.z;
-    if (max(at.x, at.y) >= map_side >> level) return;
+    if (max(at.x, at.y) >= map_side / 2u) return;
     uint child[4];
     uint nearest = kNothing;
     for (uint i = 0u; i < 4u; ++i) {
-        child[i] = pyramid_texel(level - 1u, map, 2u * at + uvec2(i & 1u, i >> 1));
+        child[i] = atlas[texel_index(map, 2u * at + uvec2(i & 1u, i >> 1))];
         nearest = min(nearest, child[i]);
     }
     uint value = nearest;
@@ -31,5 +30,5 @@ void main() {
         }
         value = support >= 3u ? pack_map_texel(sum / float(support), nearest & 0xffffu) : kOpen;
     }
-    set_pyramid_texel(level, map, at, value);
+    coarse[coarse_index(map, at)] = value;
 }

@@ -22,7 +22,7 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr uint32_t kSideStep = 8;     // so that 2 x 2 blocks of three levels never cross the border of a map
+constexpr uint32_t kSideStep = 8;     // whole vectors of 8 texels: native/close.cpp
 constexpr double kSplatTexels = 1.6;  // radius of the thinned splats
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
 // Room of the queue: an atlas of 2048 x 2048 has some 2M pairs. The least room is what one block may need.
@@ -42,15 +42,12 @@ Result<void> pull_push(Device& device, const ShadowMaps& maps) {
     const AtlasLayout& layout = maps.layout;
     maps.atlas.bind(kBindAtlas);
     maps.coarse.bind(kBindCoarse);
-    const auto run = [&](const Program& program, uint32_t level) {
-        const uint32_t side = layout.side >> level;
+    const auto run = [&](const Program& program, uint32_t side) {
         set_layout(program, layout);
-        program.set("maps", layout.maps);
-        program.set("level", level);
         program.dispatch(side, side, layout.maps);
     };
-    for (uint32_t level = 1; level <= layout.levels; ++level) run(*pull, level);
-    for (uint32_t level = layout.levels; level-- > 0;) run(*push, level);
+    run(*pull, layout.side / 2);
+    run(*push, layout.side);
     return {};
 }
 
@@ -60,7 +57,6 @@ Defines source_defines(const ShadowMaps& maps) {
 
 /// Closes and fills all maps in C++, see close() and pull_push().
 Result<void> close_natively(ShadowMaps& maps) {
-    assert(maps.layout.levels == 1);
     {
         LUCARNE_ASSIGN(const MappedBuffer atlas, maps.atlas.map());
         LUCARNE_ASSIGN(const MappedBuffer fringe, maps.fringe.map());
@@ -238,13 +234,6 @@ void set_layout(const Program& program, const AtlasLayout& layout) {
     program.set("splat_angle", layout.splat_angle);
 }
 
-size_t AtlasLayout::coarse_texels() const {
-    size_t sum = 0;
-    for (uint32_t level = 1; level <= levels; ++level)
-        sum += size_t{maps} * (side >> level) * (side >> level);
-    return sum;
-}
-
 Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
     AtlasLayout layout;
     layout.maps = maps;
@@ -258,7 +247,6 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
     // A map shows 2 pi sr in pi/4 side^2 texels: the mean texel is as wide as a square of its solid angle.
     const double texel_angle = std::sqrt(8.0) / layout.side;
     layout.splat_angle = static_cast<float>(kSplatTexels * texel_angle);
-    layout.levels = 1;
     return layout;
 }
 
@@ -284,7 +272,7 @@ Result<void> clear_shadow_maps(Device& device, const DeviceCut& cut, const Atlas
     LUCARNE_TRY(device.reserve(target.atlas, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     LUCARNE_TRY(device.reserve(target.fringe, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     if (!device.native_passes())
-        LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
+        LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM atlas"));
     target.layout = layout;
     target.id_bits = sources ? static_cast<uint32_t>(std::bit_width(cut.blocks() * kBlockSurfels)) : 0;
     target.atlas.clear(kNothing);

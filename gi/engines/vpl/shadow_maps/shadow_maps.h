@@ -14,10 +14,9 @@ struct AtlasLayout {
     uint32_t maps = 0;      ///< one per VPL, one after the other in the buffer
     uint32_t side = 0;      ///< texels along a side of a map, a multiple of 8
     float splat_angle = 0;  ///< radius of the splats over their distance, rad
-    uint32_t levels = 0;    ///< levels of pull-push; 1 closes holes of one texel, 2 of three
 
     size_t texels() const { return size_t{maps} * side * side; }
-    size_t coarse_texels() const;  ///< of all levels above 0 together
+    size_t coarse_texels() const { return texels() / 4; }  ///< of all maps at half the resolution
 };
 
 /// Returns the layout of an atlas of about `atlas` x `atlas` texels for `maps` VPLs. Errors (arguments): no

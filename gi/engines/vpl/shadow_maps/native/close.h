@@ -14,7 +14,7 @@ struct CloseMemory {
     float splat_angle;
 };
 
-/// Completes the maps as close.comp, pull.comp and push.comp do, with one level of the pyramid.
+/// Completes the maps as close.comp, pull.comp and push.comp do, at half their resolution.
 void close_and_fill(const CloseMemory& memory);
 
 }  // namespace lucarne::gi::vpl::native
