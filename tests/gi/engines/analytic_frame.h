@@ -5,19 +5,18 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/engine.h"
-#include "gi/gl_frame.h"
 #include "gi/registry.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"
-#include "tests/gi/engines/bake_whole.h"
 #include "tests/gi/engines/even_order.h"
-#include "tests/gi/engines/needed_cuts.h"
+#include "tests/gi/engines/lit_scene.h"
+#include "tests/gi/engines/test_lights.h"
 #include "tests/gi/engines/test_settings.h"
 
 namespace lucarne::gi::scenes {
@@ -88,7 +87,7 @@ struct AnalyticScene {
     std::shared_ptr<const Environment> environment = nullptr;
     /// Number of materials of the scene for which the surfels were packed, if it had more.
     size_t packed_materials = 0;
-    /// What the engine has computed in advance, for pictures of the same surfels (Rendered::bake); null: it
+    /// What the engine has computed in advance, for pictures of the same surfels (Lit::bake); null: it
     /// computes it.
     std::shared_ptr<const Bake> bake = nullptr;
 };
@@ -96,42 +95,12 @@ struct AnalyticScene {
 /// Returns the camera of a square picture at `eye` that looks at `target`; `tangent` is that of half the
 /// field of view.
 inline CameraView look(const glm::vec3& eye, const glm::vec3& target, float tangent, uint32_t size) {
-    const glm::vec3 forward = glm::normalize(target - eye);
-    const glm::vec3 hint = std::abs(forward.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
-    const glm::vec3 right = glm::normalize(glm::cross(forward, hint));
-    const glm::vec3 up = glm::cross(right, forward);
-    return {glm::vec4(eye, 1e-3f),
-            glm::vec4(forward, 0),
-            glm::vec4(right * tangent, 0),
-            glm::vec4(up * tangent, 0),
-            size,
-            size,
-            0,
-            0};
+    return gi::look(eye, target, size, size, 2 * std::atan(tangent));
 }
-
-inline Light spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
-                  float intensity) {
-    return {glm::vec4(position, std::cos(half_angle)),
-            glm::vec4(glm::normalize(target - position), std::cos(inner_angle)),
-            glm::vec4(intensity, intensity, intensity, 0)};
-}
-
-inline Material material(float diffuse, float specular, float exponent, float emission) {
-    return {glm::vec4(diffuse, diffuse, diffuse, specular),
-            glm::vec4(emission, emission, emission, exponent)};
-}
-
-struct Rendered {
-    std::vector<glm::vec4> radiance;
-    std::vector<GBufferTexel> texels;
-    std::vector<std::pair<std::string, double>> stats;
-    std::shared_ptr<const Bake> bake;
-};
 
 /// Renders a scene with an engine as the viewer would: every cut is the whole scene.
-inline Result<Rendered> render(Device& device, std::string_view engine_name, const AnalyticScene& scene,
-                               uint64_t index = 0) {
+inline Result<Lit> render(Device& device, std::string_view engine_name, const AnalyticScene& scene,
+                          uint64_t index = 0) {
     const OneNode source(scene.surfels);
     Scene assignments;
     assignments.materials.resize(std::max({scene.materials.size(), scene.packed_materials, size_t{1}}));
@@ -148,35 +117,16 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
     }
     DeviceCut cut;
     LUCARNE_TRY(pool.make_cut(device, source, entries, glm::dvec3(0.0), cut));
-    GBuffer gbuffer;
-    LUCARNE_TRY(rasterize(device, cut, scene.camera, gbuffer));
-    const size_t pixels = size_t{scene.camera.width} * scene.camera.height;
-    LUCARNE_ASSIGN(Buffer radiance, device.buffer(pixels * sizeof(glm::vec4), "radiance"));
-    radiance.clear(0x7fc00000u);  // NaN: shows pixels that the engine does not write
-    PassTimes times(device);
     LUCARNE_ASSIGN(const auto engine, make_engine(engine_name));
-    const FrameCuts cuts = needed_cuts(engine->info(), cut, scene.lights.size());
-    const std::vector<Material> materials =
-        scene.materials.empty() ? std::vector{material(1, 0, 1, 0)} : scene.materials;
     const Bounds bounds{glm::vec3(source.header().min), glm::vec3(source.header().max)};
-    auto bake = scene.bake;
-    if (!bake) {
-        LUCARNE_ASSIGN(bake, bake_whole(engine->info(), pool.download(cut), bounds, scene.settings));
-    }
-    GlFrame on_device{device, pool, cuts, gbuffer, radiance};
-    Frame frame{.camera = scene.camera,
-                .lights = scene.lights,
-                .materials = materials,
-                .settings = scene.settings,
-                .index = index,
-                .environment = scene.environment,
-                .bounds = bounds,
-                .bake = bake.get(),
-                .gl = on_device,
-                .times = times};
-    LUCARNE_TRY(engine->draw(frame));
-    return Rendered{radiance.download_all<glm::vec4>(pixels),
-                    gbuffer.texels.download_all<GBufferTexel>(pixels), engine->stats(), std::move(bake)};
+    LitOptions options;
+    options.lights = scene.lights;
+    if (!scene.materials.empty()) options.materials = scene.materials;
+    options.settings = scene.settings;
+    options.index = index;
+    options.environment = scene.environment;
+    options.bake = scene.bake;
+    return draw_frame(device, *engine, pool, cut, scene.camera, bounds, options);
 }
 
 /// Returns the point that a texel shows.

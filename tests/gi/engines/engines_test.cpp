@@ -82,7 +82,7 @@ class Engines : public testing::TestWithParam<Claims> {
     }
     static void TearDownTestSuite() { device_.reset(); }
 
-    static scenes::Rendered render(const AnalyticScene& scene) {
+    static Lit render(const AnalyticScene& scene) {
         auto rendered = scenes::render(*device_, GetParam().engine, scene);
         EXPECT_TRUE(rendered) << rendered.error().line();
         if (!rendered) return {};
@@ -290,8 +290,8 @@ void let_the_middle_emit(AnalyticScene& scene, const glm::vec3& normal) {
 }
 
 /// Compares the mean of a picture that shows only surfaces of one normal with the quadrature.
-void expect_reflected_emission(const AnalyticScene& scene, const scenes::Rendered& rendered,
-                               const glm::vec3& normal, double tolerance) {
+void expect_reflected_emission(const AnalyticScene& scene, const Lit& rendered, const glm::vec3& normal,
+                               double tolerance) {
     double sum = 0, truth = 0;
     for (size_t i = 0; i < rendered.radiance.size(); ++i) {
         sum += rendered.radiance[i].x;

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -11,29 +15,18 @@
 #include "tests/gi/engines/bake_whole.h"
 #include "tests/gi/engines/needed_cuts.h"
 #include "tests/gi/engines/surfel_cloud.h"
+#include "tests/gi/engines/test_lights.h"
 #include "tests/gi/engines/test_settings.h"
 
 namespace lucarne::gi {
-
-inline Light make_spot(const glm::vec3& from, const glm::vec3& to, float half_angle, float intensity,
-                       float softness = 0.0f) {
-    const glm::vec3 d = glm::normalize(to - from);
-    return {{from.x, from.y, from.z, std::cos(half_angle)},
-            {d.x, d.y, d.z, std::cos(half_angle * (1 - softness))},
-            {intensity, intensity, intensity, 0}};
-}
-
-inline Material make_material(float diffuse = 1, float specular = 0, float exponent = 1, float emission = 0) {
-    return {glm::vec4(diffuse, diffuse, diffuse, specular),
-            glm::vec4(emission, emission, emission, exponent)};
-}
 
 /// The picture of an engine with the data that tests compare it with.
 struct Lit {
     CameraView camera;
     std::vector<glm::vec4> radiance;
     std::vector<GBufferTexel> texels;
-    std::shared_ptr<const Bake> bake = nullptr;
+    std::vector<std::pair<std::string, double>> stats;
+    std::shared_ptr<const Bake> bake;
 
     glm::vec3 at(uint32_t x, uint32_t y) const {
         const glm::vec4 v = radiance[y * camera.width + x];
@@ -46,7 +39,7 @@ struct Lit {
 
 struct LitOptions {
     std::vector<Light> lights;
-    std::vector<Material> materials = {make_material()};
+    std::vector<Material> materials = {scenes::material()};
     glm::vec3 background{0.0f};
     EngineSettings settings = test_settings();
     uint64_t index = 0;
@@ -62,40 +55,22 @@ struct LitOptions {
     std::shared_ptr<const Bake> bake = nullptr;
 };
 
-/// Renders a cloud with an engine. One cut, the whole cloud, is view cut, light-view cut and light cut.
-inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, const CameraView& camera,
-                    const LitOptions& options) {
-    Lit lit{camera, {}, {}};
-    auto loaded = load_cloud(device, cloud);
-    if (!loaded) {
-        ADD_FAILURE() << loaded.error().line();
-        return lit;
-    }
-    DeviceCut& cut = (*loaded)->cut;
-    if (options.clip.active()) {
-        const auto made =
-            (*loaded)->pool.make_cut(device, cloud, cloud.whole(), glm::dvec3(0.0), cut, options.clip);
-        EXPECT_TRUE(made) << made.error().line();
-    }
+/// Renders one frame of `cut`, which is view cut, light-view cut and light cut as far as the engine needs
+/// them. Errors: those of the engine and of what it computes in advance, device memory.
+inline Result<Lit> draw_frame(Device& device, Engine& engine, const SurfelPool& pool, const DeviceCut& cut,
+                              const CameraView& camera, const Bounds& bounds, const LitOptions& options) {
     GBuffer gbuffer;
-    auto drawn = rasterize(device, cut, camera, gbuffer, options.size);
-    EXPECT_TRUE(drawn) << drawn.error().line();
+    LUCARNE_TRY(rasterize(device, cut, camera, gbuffer, options.size));
     const size_t pixels = size_t{camera.width} * camera.height;
-    auto radiance = device.buffer(pixels * sizeof(glm::vec4), "radiance");
-    EXPECT_TRUE(radiance);
-    radiance->clear(0x7fc00000u);  // NaN: the engine has to write every pixel
+    LUCARNE_ASSIGN(Buffer radiance, device.buffer(pixels * sizeof(glm::vec4), "radiance"));
+    radiance.clear(0x7fc00000u);  // NaN: the engine has to write every pixel
     PassTimes times(device);
     const FrameCuts cuts = needed_cuts(engine.info(), cut, options.lights.size());
-    const Bounds bounds =
-        options.bounds.value_or(Bounds{glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)});
-    if (!options.bake) {
-        auto bake = bake_whole(engine.info(), (*loaded)->pool.download(cut), bounds, options.settings);
-        EXPECT_TRUE(bake) << bake.error().line();
-        if (bake) lit.bake = std::move(*bake);
-    } else {
-        lit.bake = options.bake;
+    auto bake = options.bake;
+    if (!bake) {
+        LUCARNE_ASSIGN(bake, bake_whole(engine.info(), pool.download(cut), bounds, options.settings));
     }
-    GlFrame on_device{device, (*loaded)->pool, cuts, gbuffer, *radiance};
+    GlFrame on_device{device, pool, cuts, gbuffer, radiance};
     Frame frame{.camera = camera,
                 .lights = options.lights,
                 .materials = options.materials,
@@ -106,16 +81,35 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 .bounds = bounds,
                 .moving = options.moving,
                 .light_budget = options.light_budget,
-                .bake = lit.bake.get(),
+                .bake = bake.get(),
                 .stop = options.stop,
                 .unlit = options.unlit,
                 .gl = on_device,
                 .times = times};
-    const auto drawn_by_engine = engine.draw(frame);
-    EXPECT_TRUE(drawn_by_engine) << drawn_by_engine.error().line();
-    lit.radiance = radiance->download_all<glm::vec4>(pixels);
-    lit.texels = gbuffer.texels.download_all<GBufferTexel>(pixels);
-    return lit;
+    LUCARNE_TRY(engine.draw(frame));
+    return Lit{camera, radiance.download_all<glm::vec4>(pixels),
+               gbuffer.texels.download_all<GBufferTexel>(pixels), engine.stats(), std::move(bake)};
+}
+
+/// Renders a whole cloud with an engine. A failure fails the test.
+inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, const CameraView& camera,
+                    const LitOptions& options) {
+    const auto loaded = load_cloud(device, cloud);
+    if (!loaded) {
+        ADD_FAILURE() << loaded.error().line();
+        return {};
+    }
+    SurfelPool& pool = (*loaded)->pool;
+    DeviceCut& cut = (*loaded)->cut;
+    if (options.clip.active()) {
+        const auto made = pool.make_cut(device, cloud, cloud.whole(), glm::dvec3(0.0), cut, options.clip);
+        EXPECT_TRUE(made) << made.error().line();
+    }
+    const Bounds whole{glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)};
+    auto lit = draw_frame(device, engine, pool, cut, camera, options.bounds.value_or(whole), options);
+    if (lit) return std::move(*lit);
+    ADD_FAILURE() << lit.error().line();
+    return {};
 }
 
 }  // namespace lucarne::gi

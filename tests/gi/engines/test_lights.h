@@ -1,14 +1,39 @@
-// Lights that have a size, for tests.
+// Lights, skies and materials for tests.
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include <glm/geometric.hpp>
 
 #include "gi/scene/environment.h"
 #include "gi/shared/light.h"
+#include "gi/shared/material.h"
 
 namespace lucarne::gi::scenes {
+
+/// Returns a material that reflects the shares `diffuse` and `specular`, whose lobe has the exponent
+/// `exponent`, and emits the radiance `emission`.
+inline Material material(float diffuse = 1, float specular = 0, float exponent = 1, float emission = 0) {
+    return {glm::vec4(diffuse, diffuse, diffuse, specular),
+            glm::vec4(emission, emission, emission, exponent)};
+}
+
+inline Light point(const glm::vec3& position, float intensity) {
+    Light light{};
+    light.kind = kPointLight;
+    light.position = glm::vec4(position, 0);
+    light.strength = glm::vec4(glm::vec3(intensity), 0);
+    return light;
+}
+/// Returns a spot light that is as bright as `intensity` up to `inner_angle` from its axis and ends at
+/// `half_angle`.
+inline Light spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
+                  float intensity) {
+    return {glm::vec4(position, std::cos(half_angle)),
+            glm::vec4(glm::normalize(target - position), std::cos(inner_angle)),
+            glm::vec4(intensity, intensity, intensity, 0)};
+}
 
 inline Light rectangle_light(const glm::vec3& middle, const glm::vec3& half_edge, float other_half,
                              const glm::vec3& normal, float radiance) {

@@ -16,8 +16,8 @@
 #include "gi/shared/luminance.h"
 #include "io/core/random.h"
 #include "tests/gi/engines/analytic_frame.h"
-#include "tests/gi/engines/soft_light_scenes.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/engines/test_lights.h"
 
 namespace lucarne::gi {
 namespace {

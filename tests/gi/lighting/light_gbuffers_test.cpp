@@ -23,7 +23,7 @@ class LightGBuffersTest : public OnDevice {
         for (size_t i = 0; i < count; ++i) {
             const float x = .2f + 1.5f * static_cast<float>(i) / static_cast<float>(count);
             const glm::vec3 eye(x, 1, 1.8f);
-            views.push_back({make_spot(eye, glm::vec3(1, 1, 0), .6f, 5), &cloud_->cut, 0,
+            views.push_back({scenes::spot(eye, glm::vec3(1, 1, 0), .6f, .6f, 5), &cloud_->cut, 0,
                              look(eye, glm::vec3(1, 1, 0), 32, 32)});
         }
         return views;

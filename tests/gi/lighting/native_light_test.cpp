@@ -33,7 +33,7 @@ std::vector<Surfel> yard(bool shadows) {
 }
 
 Light make_light(uint32_t kind) {
-    Light light = make_spot({-0.9f, 0.2f, 1.1f}, {0, 2.5f, -0.5f}, 0.7f, 20, 0.4f);
+    Light light = scenes::spot({-0.9f, 0.2f, 1.1f}, {0, 2.5f, -0.5f}, 0.7f, 0.7f * (1 - 0.4f), 20);
     light.kind = kind;
     if (kind == kDirectionalLight) light.direction.w = 0;
     if (kind == kRectangleLight) {
@@ -170,7 +170,8 @@ class NativeLight : public OnDevice {
     }
 
     std::unique_ptr<LoadedCloud> loaded_;
-    std::vector<Material> materials_ = {make_material(), make_material(1.3f), make_material(1, 0, 1, 2)};
+    std::vector<Material> materials_ = {scenes::material(), scenes::material(1.3f),
+                                        scenes::material(1, 0, 1, 2)};
     std::shared_ptr<const Environment> environment_ = make_sky();
     Shot shot_;
     GBuffer gbuffer_;
@@ -276,10 +277,10 @@ TEST_F(NativeLight, EmptyPixelsShowTheSky) {
 }
 
 TEST_F(NativeLight, LobesAreLeftToTheShader) {
-    materials_[1] = make_material(0.5f, 0.4f, 20);
+    materials_[1] = scenes::material(0.5f, 0.4f, 20);
     draw(table().front());
     EXPECT_EQ(light(true), light(false));
-    materials_[1] = make_material(0.5f, 0, 20);
+    materials_[1] = scenes::material(0.5f, 0, 20);
     draw(table().front());
     EXPECT_NE(light(true), light(false));
 }

@@ -13,19 +13,15 @@ namespace lucarne::gi::tracing {
 namespace {
 
 using reference::disc_light;
-using reference::kO;
-using reference::kX;
-using reference::kY;
-using reference::kZ;
 using reference::material;
 using reference::MeanLuminance;
 using reference::rectangle_light;
 using reference::Start;
 using reference::starts_on;
-using reference::sun;
+using scenes::wide_sun;
 using reference::traced;
 using reference::tracer_of;
-using reference::uniform_environment;
+using scenes::even_sky;
 
 TEST(AliasTable, DrawsInProportionToTheWeights) {
     const std::vector<double> weights = {3, 0, 1, .01, 10, 0, 2.5};
@@ -59,7 +55,7 @@ TEST(LightSampling, RectangleLightsAParallelSquareByTheirFormFactor) {
     for (const auto& [distance, factor] : {std::pair{1.0f, 0.199825}, std::pair{0.5f, 0.415253}}) {
         const auto nothing = tracer_of({});
         const Illumination light(
-            *nothing, {}, {rectangle_light(glm::vec3(.5f, .5f, distance), -kZ, kX * .5f, .5f, 2)}, nullptr);
+            *nothing, {}, {rectangle_light(glm::vec3(.5f, .5f, distance), kX * .5f, .5f, -kZ, 2)}, nullptr);
         const auto mean =
             traced(light, starts_on(kO, kX, kY, 64, .002f, glm::vec3(.5f)), {.bounces = 0, .samples = 256});
         EXPECT_LT(mean.standard_error, .001 * factor);
@@ -69,7 +65,7 @@ TEST(LightSampling, RectangleLightsAParallelSquareByTheirFormFactor) {
 
 TEST(LightSampling, DiscOverItsAxisGivesTheIrradianceOfItsSolidAngle) {
     // E = pi L R^2 / (R^2 + h^2)
-    const auto mean = lit(disc_light(kZ * 2.0f, -kZ, .7f, 3), {kO, kZ, kZ, glm::vec3(.5f), .01f, 0});
+    const auto mean = lit(disc_light(kZ * 2.0f, .7f, -kZ, 3), {kO, kZ, kZ, glm::vec3(.5f), .01f, 0});
     const double truth = .5 * 3 * .49 / (.49 + 4);
     EXPECT_NEAR(mean.mean, truth, 1e-6 + 5 * mean.standard_error);
     EXPECT_LT(mean.standard_error, .001 * truth);
@@ -77,14 +73,14 @@ TEST(LightSampling, DiscOverItsAxisGivesTheIrradianceOfItsSolidAngle) {
 
 TEST(LightSampling, AreaLightsShineFromOneSideOnly) {
     const Start start{kO, kZ, kZ, glm::vec3(.5f), .01f, 0};
-    EXPECT_EQ(lit(disc_light(kZ, kZ, .7f, 3), start, 100).mean, 0);
-    EXPECT_EQ(lit(rectangle_light(kZ, kZ, kX, 1, 3), start, 100).mean, 0);
+    EXPECT_EQ(lit(disc_light(kZ, .7f, kZ, 3), start, 100).mean, 0);
+    EXPECT_EQ(lit(rectangle_light(kZ, kX, 1, kZ, 3), start, 100).mean, 0);
 }
 
 TEST(LightSampling, CapOfSkyGivesItsIrradianceTimesTheCosineWhateverItsRadius) {
     const glm::vec3 away = glm::normalize(glm::vec3(.5f, 0, -1));
     for (const float radius : {0.0f, .00465f, .2f, .8f}) {
-        const auto mean = lit(sun(away, 10, radius), {kO, kZ, kZ, glm::vec3(.5f), .01f, 0});
+        const auto mean = lit(wide_sun(away, radius, 10), {kO, kZ, kZ, glm::vec3(.5f), .01f, 0});
         const double truth = .5 / M_PI * 10 * -away.z;  // the whole cap is above the horizon
         EXPECT_NEAR(mean.mean, truth, 1e-4 * truth + 5 * mean.standard_error) << radius;
         EXPECT_LT(mean.standard_error, .003 * truth) << radius;
@@ -95,7 +91,7 @@ TEST(LightSampling, HalfTheSunBehindAnEdgeGivesHalfItsLight) {
     std::vector<Surfel> wall;
     scenes::add_rectangle(wall, glm::vec3(0, -2, 2), kX * 4.0f, kY * 4.0f, 400, glm::vec3(.5f));
     const auto tracer = tracer_of(wall);
-    const Illumination light(*tracer, {}, {sun(-kZ, 10, .1f)}, nullptr);
+    const Illumination light(*tracer, {}, {wide_sun(-kZ, .1f, 10)}, nullptr);
     const Start start{kO, kZ, kZ, glm::vec3(.5f), 1e-4f, 0};
     const auto mean = traced(light, {start}, {.bounces = 0, .samples = 40000});
     // The edge of the wall extends .1 of its surfels' spacing too far: .001 of a cap's radius of .2.
@@ -117,8 +113,8 @@ double by_even_directions(const Reflectance& surface, const glm::vec3& out, cons
 
 TEST(LightSampling, GlossySurfacesShowAreasSkiesAndCapsWhicheverWayTheyAreSampled) {
     const glm::vec3 out = glm::normalize(glm::vec3(.3f, 0, 1));
-    const Light square = rectangle_light(glm::vec3(-.5f, 0, 2), -kZ, kX * .5f, .8f, 2);
-    const Light cap = sun(glm::vec3(.4f, 0, -1), 5, .15f);
+    const Light square = rectangle_light(glm::vec3(-.5f, 0, 2), kX * .5f, .8f, -kZ, 2);
+    const Light cap = wide_sun(glm::vec3(.4f, 0, -1), .15f, 5);
     auto sky = std::make_shared<Environment>();
     *sky = {16, 8, std::vector<glm::vec3>(128, glm::vec3(.1f)), .3f};
     for (size_t i : {5u, 20u, 21u, 40u, 55u}) sky->texels[i] = glm::vec3(4);
@@ -152,8 +148,8 @@ TEST(LightSampling, WhatIsDrawnHasTheDensityThatIsClaimed) {
     *sky = {16, 8, std::vector<glm::vec3>(128, glm::vec3(0)), -1.0f};
     for (size_t i : {0u, 5u, 40u, 55u, 127u}) sky->texels[i] = glm::vec3(static_cast<float>(i + 1));
     const EnvironmentSampler sampler(sky);
-    const Light lights[] = {rectangle_light(kZ * 2.0f, -kZ, kX * .5f, .8f, 2), disc_light(kZ, -kZ, .7f, 3),
-                            sun(-kZ, 5, .3f)};
+    const Light lights[] = {rectangle_light(kZ * 2.0f, kX * .5f, .8f, -kZ, 2), disc_light(kZ, .7f, -kZ, 3),
+                            wide_sun(-kZ, .3f, 5)};
     double mean_inverse[4] = {0, 0, 0, 0};
     const int count = 20000;
     for (int i = 0; i < count; ++i) {
@@ -185,9 +181,9 @@ TEST(LightSampling, WhatIsDrawnHasTheDensityThatIsClaimed) {
 
 TEST(LightSampling, DarkEnvironmentIsNone) {
     const auto nothing = tracer_of({});
-    const Illumination light(*nothing, {}, {}, uniform_environment(0));
+    const Illumination light(*nothing, {}, {}, even_sky(0));
     EXPECT_EQ(light.environment(), nullptr);
-    EXPECT_EQ(lit(sun(kZ, 10, 0), {kO, kZ, kZ, glm::vec3(.5f), .01f, 0}, 1).mean, 0) << "from below";
+    EXPECT_EQ(lit(wide_sun(kZ, 0, 10), {kO, kZ, kZ, glm::vec3(.5f), .01f, 0}, 1).mean, 0) << "from below";
 }
 
 }  // namespace

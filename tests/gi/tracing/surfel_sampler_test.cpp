@@ -11,10 +11,6 @@
 namespace lucarne::gi::tracing {
 namespace {
 
-using reference::kO;
-using reference::kX;
-using reference::kY;
-using reference::kZ;
 using reference::material;
 using reference::MeanLuminance;
 using reference::PathSettings;
@@ -22,7 +18,7 @@ using reference::point;
 using reference::spot;
 using reference::Start;
 using reference::starts_on;
-using reference::sun;
+using scenes::wide_sun;
 using reference::traced;
 using reference::tracer_of;
 
@@ -98,7 +94,7 @@ TEST(SurfelSampler, SeveralLightsOfAllSharpKindsOnGlossyWallsKeepTheirMean) {
     const Illumination light(
         *tracer, {material(1, .3f, 30, 0)},
         {point(glm::vec3(.3f, 2, 2), 1), spot(glm::vec3(3, 3, 3), glm::vec3(4, 2, 1), .5f, .3f, 4),
-         sun(glm::vec3(1, .5f, -1), 1, 0)},
+         wide_sun(glm::vec3(1, .5f, -1), 0, 1)},
         nullptr);
     for (const int32_t only : {1, 3}) {
         const Compared c = compare(light, {.only_bounce = only, .samples = 256}, 4);

@@ -210,7 +210,7 @@ TEST_F(OpenClBesideOpenGl, ChangesNoPicture) {
     const SurfelCloud cloud(scenes::closed_box(4, 60, glm::vec3(.5f)));
     const CameraView camera = look({2, 1, 2}, {2, 4, 2}, 48, 48);
     LitOptions options;
-    options.lights = {make_spot({2, 1, 2}, {2, 4, 2}, 0.6f, 10)};
+    options.lights = {scenes::spot({2, 1, 2}, {2, 4, 2}, 0.6f, 0.6f, 10)};
     const auto picture = [&] {
         return light_up(*device, **make_engine("direct"), cloud, camera, options).radiance;
     };

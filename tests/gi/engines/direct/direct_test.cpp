@@ -33,7 +33,7 @@ std::vector<Surfel> plate(float half, float z, int n, float albedo = 0.5f) {
 
 TEST_F(DirectTest, PlaneUnderASpotReflectsWhatTheFormulaSays) {
     LitOptions options;
-    options.lights = {make_spot({0.5f, 0.2f, 2}, {0, 0, 0}, 0.7f, 30)};
+    options.lights = {scenes::spot({0.5f, 0.2f, 2}, {0, 0, 0}, 0.7f, 0.7f, 30)};
     const Lit lit = light(plate(2, 0, 100), look({0, -2, 2.5f}, {0, 0, 0}, 160, 120, 0.6f), options);
     for (uint32_t y = 20; y < 100; y += 7)
         for (uint32_t x = 30; x < 130; x += 7) {
@@ -49,8 +49,8 @@ TEST_F(DirectTest, PlaneUnderASpotReflectsWhatTheFormulaSays) {
 
 TEST_F(DirectTest, GlossyLobeIsAddedInTheMirrorDirection) {
     LitOptions options;
-    options.lights = {make_spot({0, 2, 2}, {0, 0, 0}, 0.3f, 30)};
-    options.materials = {make_material(1, 0.3f, 50)};
+    options.lights = {scenes::spot({0, 2, 2}, {0, 0, 0}, 0.3f, 0.3f, 30)};
+    options.materials = {scenes::material(1, 0.3f, 50)};
     const Lit lit = light(plate(1, 0, 100), look({0, -2, 2}, {0, 0, 0}, 101, 101, 0.2f), options);
     // In the middle the eye is in the mirror direction, so cos^n = 1.
     const float expected = (0.5f / kPi + 0.3f * 52 / (2 * kPi)) * 30 * std::sqrt(0.5f) / 8;
@@ -60,7 +60,7 @@ TEST_F(DirectTest, GlossyLobeIsAddedInTheMirrorDirection) {
 TEST_F(DirectTest, SpotsEdgeLiesWhereItsConeEnds) {
     constexpr float kHalf = 0.4f, kHeight = 3;
     LitOptions options;
-    options.lights = {make_spot({0, 0, kHeight}, {0, 0, 0}, kHalf, 30, 0.3f)};
+    options.lights = {scenes::spot({0, 0, kHeight}, {0, 0, 0}, kHalf, kHalf * (1 - 0.3f), 30)};
     const Lit lit = light(plate(3, 0, 150), look({0, -0.01f, 8}, {0, 0, 0}, 240, 240, 0.6f), options);
     const float outer = kHeight * std::tan(kHalf), inner = kHeight * std::tan(kHalf * 0.7f);
     size_t lit_pixels = 0, faded = 0;
@@ -92,7 +92,7 @@ TEST_F(DirectTest, SquareOccluderThrowsItsShadowWhereGeometrySays) {
     const auto occluder = plate(kHalf, kAt, 60);
     surfels.insert(surfels.end(), occluder.begin(), occluder.end());
     LitOptions options;
-    options.lights = {make_spot({0, 0, kLight}, {0, 0, 0}, 0.5f, 30)};
+    options.lights = {scenes::spot({0, 0, kLight}, {0, 0, 0}, 0.5f, 0.5f, 30)};
     options.settings.set(kLightResolution, 512);
     // Seen from the side, so that the occluder does not hide its shadow.
     const Lit lit = light(surfels, look({0, -4, 1.5f}, {0, 0, 0}, 320, 240, 0.5f), options);
@@ -134,7 +134,7 @@ TEST_F(DirectTest, CurvedNoisySurfaceHasNoAcneInTheLight) {
             {n * (1 + 0.25f * spacing * noise(random)), n, glm::vec3(0.5f), 0, spacing * spacing, 0});
     }
     LitOptions options;
-    options.lights = {make_spot({0, -4, 0}, {0, 0, 0}, 0.3f, 30)};
+    options.lights = {scenes::spot({0, -4, 0}, {0, 0, 0}, 0.3f, 0.3f, 30)};
     const Lit lit = light(ball, look({0.5f, -4, 0.5f}, {0, 0, 0}, 240, 240, 0.55f), options);
     size_t seen = 0;
     for (uint32_t y = 0; y < 240; ++y)
@@ -159,8 +159,8 @@ TEST_F(DirectTest, SealedBoxStaysBlackInside) {
     std::vector<Surfel> box = scenes::closed_box(2, 60, glm::vec3(0.8f));
     for (Surfel& s : box) s.position -= glm::vec3(1);
     LitOptions options;
-    options.lights = {make_spot({0.3f, 0.2f, 4}, {0, 0, 0}, 0.6f, 1000),
-                      make_spot({4, 3, 0.4f}, {0, 0, 0}, 0.6f, 1000)};
+    options.lights = {scenes::spot({0.3f, 0.2f, 4}, {0, 0, 0}, 0.6f, 0.6f, 1000),
+                      scenes::spot({4, 3, 0.4f}, {0, 0, 0}, 0.6f, 0.6f, 1000)};
     for (const glm::vec3 to :
          {glm::vec3(1, 0.3f, 0.9f), glm::vec3(-1, 0.5f, -0.5f), glm::vec3(0.2f, 0.1f, -1)}) {
         const Lit lit = light(box, look({0.1f, 0.1f, 0.1f}, to, 160, 120, 1.6f), options);
@@ -174,7 +174,7 @@ TEST_F(DirectTest, LightInsideABoxDoesNotLeaveIt) {
     const auto floor = plate(3, -0.6f, 150);
     surfels.insert(surfels.end(), floor.begin(), floor.end());
     LitOptions options;
-    options.lights = {make_spot({0, 0, 0.2f}, {0, 0, -1}, 1.2f, 1000)};
+    options.lights = {scenes::spot({0, 0, 0.2f}, {0, 0, -1}, 1.2f, 1.2f, 1000)};
     const Lit lit = light(surfels, look({0, -4, 2}, {0, 0, -0.5f}, 160, 120, 0.8f), options);
     for (const glm::vec4& v : lit.radiance) ASSERT_EQ(glm::vec3(v.x, v.y, v.z), glm::vec3(0.0f));
 }
@@ -182,8 +182,8 @@ TEST_F(DirectTest, LightInsideABoxDoesNotLeaveIt) {
 TEST_F(DirectTest, LightsAddUp) {
     const auto surfels = plate(2, 0, 60);
     const CameraView camera = look({0, -2, 2.5f}, {0, 0, 0}, 80, 60, 0.6f);
-    const Light a = make_spot({0.5f, 0.2f, 2}, {0, 0, 0}, 0.7f, 30);
-    const Light b = make_spot({-0.5f, 0.6f, 1}, {0, 0, 0}, 0.5f, 10);
+    const Light a = scenes::spot({0.5f, 0.2f, 2}, {0, 0, 0}, 0.7f, 0.7f, 30);
+    const Light b = scenes::spot({-0.5f, 0.6f, 1}, {0, 0, 0}, 0.5f, 0.5f, 10);
     LitOptions options;
     options.lights = {a};
     const Lit first = light(surfels, camera, options);
@@ -197,7 +197,7 @@ TEST_F(DirectTest, LightsAddUp) {
 
 TEST_F(DirectTest, WithoutLightsOnlyEmissionAndBackgroundAreSeen) {
     LitOptions options;
-    options.materials = {make_material(1, 0, 1, 2.5f)};
+    options.materials = {scenes::material(1, 0, 1, 2.5f)};
     options.background = {0.1f, 0.2f, 0.3f};
     const Lit lit = light(plate(0.5f, 0, 30), look({0, -2, 2}, {0, 0, 0}, 80, 60, 1.0f), options);
     size_t surface = 0;
@@ -218,10 +218,10 @@ TEST_F(DirectTest, BadSceneNeverGivesANumberThatIsNone) {
     surfels[5].normal = glm::vec3(0.0f);
     surfels[6].material = 255;  // no such material
     LitOptions options;
-    options.materials = {make_material(5, 2, 0)};                  // kd + ks far above 1, no exponent
-    options.lights = {make_spot({0, 0, 0}, {0, 0, -1}, 1.2f, 30),  // in the plane of the wall
-                      make_spot({0, 0, 1}, {0, 0, 0}, 1.7f, 30),   // wider than a half space
-                      make_spot({0, 0, 1}, {0, 0, 0}, 0.5f, 0)};   // dark
+    options.materials = {scenes::material(5, 2, 0)};  // kd + ks far above 1, no exponent
+    options.lights = {scenes::spot({0, 0, 0}, {0, 0, -1}, 1.2f, 1.2f, 30),  // in the plane of the wall
+                      scenes::spot({0, 0, 1}, {0, 0, 0}, 1.7f, 1.7f, 30),   // wider than a half space
+                      scenes::spot({0, 0, 1}, {0, 0, 0}, 0.5f, 0.5f, 0)};   // dark
     const Lit lit = light(surfels, look({0, -2, 2}, {0, 0, 0}, 80, 60, 1.0f), options);
     for (const glm::vec4& v : lit.radiance) {
         ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
@@ -231,7 +231,7 @@ TEST_F(DirectTest, BadSceneNeverGivesANumberThatIsNone) {
 
 TEST_F(DirectTest, NoSurfelsGiveTheBackground) {
     LitOptions options;
-    options.lights = {make_spot({0, 0, 2}, {0, 0, 0}, 0.5f, 30)};
+    options.lights = {scenes::spot({0, 0, 2}, {0, 0, 0}, 0.5f, 0.5f, 30)};
     options.background = glm::vec3(0.5f);
     const Lit lit = light({}, look({0, -2, 2}, {0, 0, 0}, 40, 30), options);
     for (const glm::vec4& v : lit.radiance) ASSERT_EQ(v.x, 0.5f);
@@ -242,7 +242,7 @@ TEST(Brdf, ReflectsNoMoreThanArrives) {
     std::uniform_real_distribution<float> unit(0, 1);
     const glm::vec3 normal(0, 0, 1), from = glm::normalize(glm::vec3(1, 0, 1));
     for (const float ks : {0.0f, 0.4f, 1.0f}) {
-        const Reflectance r = make_reflectance(make_material(1, ks, 20), glm::vec3(1.0f));
+        const Reflectance r = make_reflectance(scenes::material(1, ks, 20), glm::vec3(1.0f));
         EXPECT_LE(r.kd.x + r.ks, 1.0f);
         double sum = 0;
         constexpr int kSamples = 200000;
@@ -257,7 +257,7 @@ TEST(Brdf, ReflectsNoMoreThanArrives) {
 }
 
 TEST(Spot, FluxOfASharpConeIsIntensityTimesSolidAngle) {
-    const Light spot = make_spot({0, 0, 0}, {0, 0, 1}, 0.6f, 2);
+    const Light spot = scenes::spot({0, 0, 0}, {0, 0, 1}, 0.6f, 0.6f, 2);
     double flux = 0;
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {

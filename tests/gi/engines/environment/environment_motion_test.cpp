@@ -18,7 +18,7 @@ namespace {
 class EnvironmentMotion : public OnDevice {
  protected:
     EnvironmentMotion() : cloud_(scenes::closed_box(2, 60, glm::vec3(.6f))) {
-        options_.lights = {make_spot(glm::vec3(.6f, 1, 1.8f), glm::vec3(1, 1, 0), .6f, 5)};
+        options_.lights = {scenes::spot(glm::vec3(.6f, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options_.settings.set(kBounces, 2);
         options_.bounds = {glm::vec3(0), glm::vec3(2)};
     }
@@ -85,7 +85,7 @@ TEST_F(EnvironmentMotion, LightOfOtherContentOrOtherBouncesIsNotKept) {
     options_.settings.set(kBounces, 3);
     in_motion(*engine, aside_);
     EXPECT_GT(figure(*engine, "primary_points"), 0) << "so the frame is a whole one";
-    options_.materials = {make_material(.5f, .4f, 20)};
+    options_.materials = {scenes::material(.5f, .4f, 20)};
     auto glossy = *make_engine("environment");
     picture(*glossy, ahead_);
     EXPECT_FALSE(glossy->keeps_light(options_.settings, 0)) << "lobes are gathered again in every frame";

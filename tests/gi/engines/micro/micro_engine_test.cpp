@@ -19,10 +19,10 @@ using scenes::AnalyticScene, scenes::look, scenes::material, scenes::spot;
 
 class MicroEngineTest : public OnDevice {
  protected:
-    scenes::Rendered render(const AnalyticScene& scene, std::string_view engine = "micro") {
+    Lit render(const AnalyticScene& scene, std::string_view engine = "micro") {
         auto rendered = scenes::render(*device, engine, scene);
         EXPECT_TRUE(rendered) << rendered.error().line();
-        return rendered ? std::move(*rendered) : scenes::Rendered{};
+        return rendered ? std::move(*rendered) : Lit{};
     }
 };
 

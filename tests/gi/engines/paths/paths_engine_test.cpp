@@ -7,8 +7,8 @@
 #include "gi/engines/paths/options.h"
 #include "gi/registry.h"
 #include "tests/gi/engines/lit_scene.h"
-#include "tests/gi/engines/soft_light_scenes.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/engines/test_lights.h"
 #include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
@@ -26,7 +26,7 @@ class PathsEngine : public OnDevice {
         options_.settings.set(paths::kPointSpacing, 6);  // bounds are those of a cube of 16 m
         options_.settings.set(paths::kGatherRays, 64);
         options_.settings.set(paths::kEntryPoints, 50'000);
-        options_.materials = {make_material(), make_material(.5f)};
+        options_.materials = {scenes::material(), scenes::material(.5f)};
         options_.lights = {lamp(1.2f)};
         auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
         for (size_t i = 0; i < surfels.size(); i += 3) surfels[i].material = 1;
@@ -37,7 +37,7 @@ class PathsEngine : public OnDevice {
         engine_.reset();
         OnDevice::TearDown();
     }
-    static Light lamp(float x) { return make_spot({x, .9f, 1.7f}, {1, 1, 0}, .6f, 5); }
+    static Light lamp(float x) { return scenes::spot({x, .9f, 1.7f}, {1, 1, 0}, .6f, .6f, 5); }
     Lit draw() { return light_up(*device, *engine_, *cloud_, camera_, options_); }
     /// Draws with an engine that has drawn nothing before, and computes everything in advance anew.
     Lit draw_anew() {
@@ -78,7 +78,7 @@ TEST_F(PathsEngine, ManyLampsGiveThePictureOfAFreshPreparation) {
 
 TEST_F(PathsEngine, EditedMaterialsGiveThePictureOfAFreshPreparation) {
     const Lit first = draw();
-    options_.materials[1] = make_material(.9f, 0, 1, .2f);
+    options_.materials[1] = scenes::material(.9f, 0, 1, .2f);
     const Lit edited = draw();
     EXPECT_NE(edited.radiance, first.radiance);
     EXPECT_EQ(edited.radiance, draw_anew().radiance);

@@ -70,7 +70,7 @@ TEST(Emitters, SingleBouncesOfEmissionAddUpToAllOfThem) {
     for (size_t i = 0; i < 40; ++i) room[i * 7].material = 1;
     const auto tracer = tracer_of(room);
     const Illumination light(*tracer, {material(1, .2f, 30, 0), material(1, 0, 1, 5)},
-                             {disc_light(glm::vec3(.5f, .5f, .9f), -kZ, .1f, 8)}, nullptr);
+                             {disc_light(glm::vec3(.5f, .5f, .9f), .1f, -kZ, 8)}, nullptr);
     const auto starts = starts_on(kO, kX, kY, 16, room[0].radius, glm::vec3(.6f));
     const auto all = traced(light, starts, {.bounces = 3, .samples = 512});
     double sum = 0, variance = all.standard_error * all.standard_error;
@@ -87,7 +87,7 @@ TEST(Emitters, SingleBouncesOfEmissionAddUpToAllOfThem) {
 TEST(Emitters, HalvesShareNoPathAndMakeTheWhole) {
     const auto room = scenes::closed_box(1, 30, glm::vec3(.6f));
     const auto tracer = tracer_of(room);
-    const Illumination light(*tracer, {}, {disc_light(glm::vec3(.5f, .5f, .9f), -kZ, .1f, 8)}, nullptr);
+    const Illumination light(*tracer, {}, {disc_light(glm::vec3(.5f, .5f, .9f), .1f, -kZ, 8)}, nullptr);
     const auto starts = starts_on(kO, kX, kY, 40, room[0].radius, glm::vec3(.6f));
     const auto sums = PathTracer(light, {.bounces = 2, .samples = 64}).trace(starts);
     double differences = 0, claimed = 0;

@@ -37,13 +37,13 @@ TEST(Reference, OpenFurnaceUnderAUniformEnvironmentIsOneEverywhere) {
     const float rho = 0.6f;
     const auto floor_starts = [&](float radius) { return starts_on(kO, kX, kY, 24, radius, glm::vec3(rho)); };
     const auto nothing = tracer_of({});
-    const Illumination alone(*nothing, {}, {}, uniform_environment(1));
+    const Illumination alone(*nothing, {}, {}, even_sky(1));
     const auto open = traced(alone, floor_starts(.01f), {.bounces = 3, .samples = 256});
     EXPECT_NEAR(open.mean, rho, 1e-6 + 5 * open.standard_error);
     auto box = scenes::closed_box(1, 60, glm::vec3(rho));
     std::erase_if(box, [](const Surfel& s) { return s.normal.z < -.5f; });
     const auto tracer = tracer_of(box);
-    const Illumination light(*tracer, {material(1, 0, 1, 1 - rho)}, {}, uniform_environment(1));
+    const Illumination light(*tracer, {material(1, 0, 1, 1 - rho)}, {}, even_sky(1));
     const auto mean = traced(light, floor_starts(box[0].radius), {.bounces = 30, .samples = 512});
     EXPECT_LT(mean.standard_error, 0.001);
     EXPECT_NEAR(mean.mean, 1, 0.001 + 3 * mean.standard_error);

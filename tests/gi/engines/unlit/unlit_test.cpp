@@ -42,8 +42,8 @@ TEST_F(UnlitTest, FlatColoursAreThePointsOwnWhateverTheLights) {
     std::vector<Surfel> surfels;
     add_wall(surfels, 0, -4, {0.2f, 0.5f, 0.8f});
     LitOptions options;
-    options.lights = {make_spot({0, -4, 0}, {0, 0, 0}, 0.2f, 1000)};
-    options.materials = {make_material(1, 0, 1, 7)};
+    options.lights = {scenes::spot({0, -4, 0}, {0, 0, 0}, 0.2f, 0.2f, 1000)};
+    options.materials = {scenes::material(1, 0, 1, 7)};
     const Lit flat = draw(surfels, ahead(), Shading::flat, options);
     for (const glm::vec4& pixel : flat.radiance)
         EXPECT_LT(glm::distance(glm::vec3(pixel), glm::vec3(0.2f, 0.5f, 0.8f)), 0.003f);
@@ -307,7 +307,7 @@ TEST_F(UnlitTest, ALampBehindAClippedWallLightsTheRoomInEveryEngine) {
     Clip clip;
     clip.planes = {{{0, 0, 0.5}, {0, 0, -1}, false}};
     LitOptions options;
-    options.lights = {make_spot({0, 0, 2}, {0, 0, -1}, 0.5f, 30)};
+    options.lights = {scenes::spot({0, 0, 2}, {0, 0, -1}, 0.5f, 0.5f, 30)};
     options.settings.set(kBounces, 0);
     const CameraView camera = look({0, -3, 0.4f}, {0, 0, -1}, kWidth, kHeight);
     const auto mean = [&](const Lit& lit) {

@@ -23,7 +23,7 @@ class VolumeEngineTest : public testing::Test {
 
     static LitOptions options() {
         LitOptions options;
-        options.lights = {make_spot({1, 1, 1.8f}, {1, 1, 0}, .6f, 5)};
+        options.lights = {scenes::spot({1, 1, 1.8f}, {1, 1, 0}, .6f, .6f, 5)};
         options.settings.set(volume::kVoxelCount, 32);
         options.settings.set(kBounces, 3);
         return options;
@@ -60,7 +60,7 @@ TEST_F(VolumeEngineTest, LightThatIsChangedAndChangedBackIsTheSame) {
     other.lights[0].strength.x *= 2;
     EXPECT_NE(light_up(*device_, *engine, room, camera(), other).radiance, first.radiance);
     other = options();
-    other.materials = {make_material(.5f)};
+    other.materials = {scenes::material(.5f)};
     EXPECT_NE(light_up(*device_, *engine, room, camera(), other).radiance, first.radiance);
     other = options();
     other.settings.set(volume::kVoxelCount, 16);

@@ -93,7 +93,7 @@ class NativeMerge : public OnDevice {
         auto loaded = load_cloud(*device, SurfelCloud(bush_room()));
         ASSERT_TRUE(loaded);
         loaded_ = std::move(*loaded);
-        materials_ = {make_material(), make_material(1.4f)};
+        materials_ = {scenes::material(), scenes::material(1.4f)};
         ASSERT_TRUE(upload_materials(*device, materials_, device_materials_));
     }
     void TearDown() override {

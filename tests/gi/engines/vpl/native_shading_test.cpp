@@ -68,7 +68,7 @@ class NativeShading : public OnDevice {
         EngineSettings settings = test_settings();
         settings.set(kInterleave, interleave);
         Frame frame{.camera = camera_,
-                    .materials = {make_material()},
+                    .materials = {scenes::material()},
                     .settings = settings,
                     .gl = on_device,
                     .times = times};

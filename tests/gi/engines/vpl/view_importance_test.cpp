@@ -120,7 +120,8 @@ TEST_F(ViewVpls, RoomBesideABrightYardHasLittleNoiseAndTheSameLight) {
     scenes::add_rectangle(surfels, {-12, -12, -1}, {24, 0, 0}, {0, 24, 0}, 120, glm::vec3(.5f));
     const SurfelCloud cloud(std::move(surfels), {{-16, -16, -16}, 32});
     LitOptions options;
-    options.lights = {make_spot({1, 1, 1.8f}, {1, 1, 0}, .6f, 5), make_spot({8, 8, 4}, {8, 8, -1}, .9f, 400)};
+    options.lights = {scenes::spot({1, 1, 1.8f}, {1, 1, 0}, .6f, .6f, 5),
+                      scenes::spot({8, 8, 4}, {8, 8, -1}, .9f, .9f, 400)};
     options.settings.set(kOnlyBounce, 1);
     options.settings.set(kVpls, 64);
     options.settings.set(kAtlas, 512);
@@ -170,7 +171,7 @@ std::vector<Surfel> noisy_sheet(float side, int n, float height_noise, float til
 TEST_F(ViewVpls, NoisyFloorDoesNotLightItself) {
     const SurfelCloud cloud(noisy_sheet(16, 200, 0.3f, 0.04f), {{-16, -16, -16}, 32});
     LitOptions options;
-    options.lights = {make_spot({-5, 0, 2}, {-5, 0, 0}, .6f, 100)};
+    options.lights = {scenes::spot({-5, 0, 2}, {-5, 0, 0}, .6f, .6f, 100)};
     options.settings.set(kVpls, 256);
     options.settings.set(kOnlyBounce, 0);
     const double lit = lit_mean(cloud, look({-5, .1f, 2}, {-5, 0, 0}, 48, 48), options);
@@ -188,7 +189,7 @@ TEST_F(ViewVpls, LampOverANoisyRoofDoesNotLightTheCeilingUnderIt) {
     }
     const SurfelCloud cloud(std::move(sheet), {{-16, -16, -16}, 32});
     LitOptions options;
-    options.lights = {make_spot({0, 0, 2}, {0, 0, 0}, .9f, 100)};
+    options.lights = {scenes::spot({0, 0, 2}, {0, 0, 0}, .9f, .9f, 100)};
     options.settings.set(kVpls, 256);
     options.settings.set(kOnlyBounce, 0);
     const double above = lit_mean(cloud, look({0, .1f, 2}, kO, 48, 48), options);

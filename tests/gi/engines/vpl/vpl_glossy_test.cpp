@@ -21,10 +21,10 @@ using scenes::AnalyticScene, scenes::add_rectangle, scenes::glossy_corner, scene
 
 class VplGlossyTest : public OnDevice {
  protected:
-    scenes::Rendered render(const AnalyticScene& scene, std::string_view engine = "vpl", uint64_t index = 0) {
+    Lit render(const AnalyticScene& scene, std::string_view engine = "vpl", uint64_t index = 0) {
         auto rendered = scenes::render(*device, engine, scene, index);
         EXPECT_TRUE(rendered) << rendered.error().line();
-        return rendered ? *rendered : scenes::Rendered{};
+        return rendered ? *rendered : Lit{};
     }
     double mean(const AnalyticScene& scene, std::string_view engine = "vpl") {
         return mean_luminance(render(scene, engine).radiance);
@@ -115,7 +115,7 @@ struct Landed {
     double flux = 0, variance = 0;
     glm::dvec2 middle{0.0};
 };
-Landed landed(const AnalyticScene& scene, const scenes::Rendered& rendered) {
+Landed landed(const AnalyticScene& scene, const Lit& rendered) {
     Landed all;
     const double side = 2 * .43 * (kImage - 1.6) / scene.camera.width;
     double squares = 0;

@@ -21,7 +21,7 @@ class VplHeld : public OnDevice {
     std::vector<glm::vec4> picture(Engine& engine, const Shot& shot) {
         const SurfelCloud cloud(scenes::closed_box(2, 60, glm::vec3(shot.albedo)));
         LitOptions options;
-        options.lights = {make_spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, 5)};
+        options.lights = {scenes::spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options.settings.set(kBounces, shot.bounces);
         options.settings.set(vpl::kVpls, 64);
         options.settings.set(vpl::kAtlas, 512);

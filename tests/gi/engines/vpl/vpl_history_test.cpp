@@ -24,7 +24,7 @@ class VplHistory : public OnDevice {
     std::vector<glm::vec4> picture(Engine& engine, const Shot& shot) {
         const SurfelCloud cloud(scenes::closed_box(2, 60, glm::vec3(.5f)));
         LitOptions options;
-        options.lights = {make_spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, 5)};
+        options.lights = {scenes::spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options.settings.set(kOnlyBounce, 1);
         options.settings.set(vpl::kVpls, 64);
         options.settings.set(vpl::kInterleave, 4);

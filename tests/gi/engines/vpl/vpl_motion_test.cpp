@@ -38,7 +38,7 @@ constexpr double kSame = 1e-3;
 class VplMotion : public OnDevice {
  protected:
     VplMotion() : cloud_(scenes::closed_box(2, 60, glm::vec3(.6f))) {
-        options_.lights = {make_spot(glm::vec3(.6f, 1, 1.8f), glm::vec3(1, 1, 0), .6f, 5)};
+        options_.lights = {scenes::spot(glm::vec3(.6f, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options_.settings.set(kBounces, 1);
         options_.settings.set(vpl::kVpls, 128);
         options_.settings.set(vpl::kAtlas, 512);

@@ -12,8 +12,8 @@
 #include "gi/lighting/light_options.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/lit_scene.h"
-#include "tests/gi/engines/soft_light_scenes.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/engines/test_lights.h"
 #include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
