@@ -19,6 +19,7 @@
 #include "io/core/interrupt.h"
 #include "io/core/options.h"
 #include "io/files/temporary_folder.h"
+#include "tests/bench/machine.h"
 
 namespace lucarne::bench {
 
@@ -100,8 +101,8 @@ inline std::string read_arguments(int argc, char** argv, const BenchWords& words
 }
 
 /// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed, also by
-/// a signal that ends the program. Returns the exit status: 1 if something failed, but not for a missed
-/// target.
+/// a signal that ends the program. First prints circumstances(). Returns the exit status: 1 if something
+/// failed, but not for a missed target.
 inline int bench_main(int argc, char** argv, const std::function<Result<void>(const BenchRun&)>& measure,
                       const BenchWords& words = {}) {
     const std::string program = std::filesystem::path(argv[0]).filename();
@@ -125,6 +126,7 @@ inline int bench_main(int argc, char** argv, const std::function<Result<void>(co
         run.folder = own.emplace(std::move(*made)).path();
     }
     std::filesystem::create_directories(run.folder);
+    fmt::print("{}{}: {}\n", program, run.subject.empty() ? "" : " " + run.subject, circumstances());
     const auto done = measure(run);
     if (!done) fmt::print(stderr, "{}: {}\n", program, done.error().line());
     return done ? 0 : 1;

@@ -39,14 +39,6 @@ constexpr int kTrials = 5;
 /// Mean difference of a byte that shows that the scene has turned.
 constexpr double kTurned = 0.5;
 
-/// Returns the processor's name as Linux states it.
-std::string processor() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown processor";
-}
-
 /// Returns the processor time that a program has used so far (proc(5), /proc/PID/stat, fields 14 and 15).
 double cpu_seconds(const Background& program) {
     const std::string stat = test::bytes_of(fmt::format("/proc/{}/stat", program.pid()));
@@ -307,7 +299,6 @@ Result<Turned> turn_lucarne(const Stage& stage, const std::string& engine) {
 }
 
 Result<void> measure(const bench::BenchRun& run) {
-    fmt::print("{} hardware threads, {}\n", std::thread::hardware_concurrency(), processor());
     if (!test::VirtualScreen::installed() || !test::installed("import")) {
         row_missing("the window beside other viewers",
                     "needs Xvfb, xdotool and import (Debian: imagemagick)");

@@ -18,10 +18,10 @@ using reference::MeanLuminance;
 using reference::rectangle_light;
 using reference::Start;
 using reference::starts_on;
-using scenes::wide_sun;
 using reference::traced;
 using reference::tracer_of;
 using scenes::even_sky;
+using scenes::wide_sun;
 
 TEST(AliasTable, DrawsInProportionToTheWeights) {
     const std::vector<double> weights = {3, 0, 1, .01, 10, 0, 2.5};

@@ -18,9 +18,9 @@ using reference::point;
 using reference::spot;
 using reference::Start;
 using reference::starts_on;
-using scenes::wide_sun;
 using reference::traced;
 using reference::tracer_of;
+using scenes::wide_sun;
 
 float gauss(Random& random) {
     return static_cast<float>(std::sqrt(-2 * std::log(1 - random.uniform())) *
