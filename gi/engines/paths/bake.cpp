@@ -135,6 +135,7 @@ class PathsPrecomputation final : public Precomputation {
         bake->near = PointCells(paths.points, kPixelReach);
         bake->far = PointCells(paths.points, kFarReach);
         bake->paths = std::move(paths);
+        bake->seed = input.settings[kSeed];
         bake_ = std::move(bake);
         return {};
     }

@@ -38,6 +38,7 @@ struct Entry {
 class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBake> {
  public:
     LightPaths paths;
+    uint64_t seed = 0;           ///< of the directions of the gathering rays
     std::vector<Entry> entries;  ///< of paths.entries
     PointCells near;             ///< of the gathering points, with their reaches on pixels
     PointCells far;              ///< likewise, for pixels that no reach covers

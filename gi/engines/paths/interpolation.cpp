@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "io/core/parallel.h"
 
@@ -17,54 +18,64 @@ constexpr float kTurn = 0.29403f, kSharingTurn = 0.17235f, kWideTurn = 0.48369f;
 constexpr float kLeastSum = 1e-3f;
 constexpr size_t kPointsAPiece = 256;
 
-glm::vec3 irradiance_within(const PathsBake& bake, std::span<const glm::vec3> irradiance, float turn,
-                            const glm::vec3& position, const glm::vec3& normal, bool& alone) {
-    glm::vec3 sum(0.0f), wide_sum(0.0f);
+}  // namespace
+
+bool PointFinder::find_within(float turn, const glm::vec3& position, const glm::vec3& normal) {
+    shares_.clear();
+    wide_.clear();
     float weights = 0, wide_weights = 0;
-    bake.near.visit(position, [&](uint32_t i) {
-        const GatheringPoint& point = bake.paths.points[i];
+    bake_.near.visit(position, [&](uint32_t i) {
+        const GatheringPoint& point = bake_.paths.points[i];
         const float reach = kPixelReach * point.reach;
         const float wide2 = squared_error_of(point, reach, kWideTurn, position, normal);
         if (wide2 >= 1) return;
-        const float wide = 1 - std::sqrt(std::max(wide2, 0.0f));
-        wide_sum += wide * irradiance[i];
-        wide_weights += wide;
+        wide_.push_back({i, 1 - std::sqrt(std::max(wide2, 0.0f))});
+        wide_weights += wide_.back().share;
         const float error2 = squared_error_of(point, reach, turn, position, normal);
         if (error2 >= 1) return;
-        const float weight = 1 - std::sqrt(std::max(error2, 0.0f));
-        sum += weight * irradiance[i];
-        weights += weight;
+        shares_.push_back({i, 1 - std::sqrt(std::max(error2, 0.0f))});
+        weights += shares_.back().share;
     });
-    alone = !(std::max(weights, wide_weights) > kLeastSum);
-    if (!alone) return weights > kLeastSum ? sum / weights : wide_sum / wide_weights;
+    if (std::max(weights, wide_weights) > kLeastSum) {
+        const bool narrow = weights > kLeastSum;
+        if (!narrow) std::swap(shares_, wide_);
+        for (PointShare& s : shares_) s.share /= narrow ? weights : wide_weights;
+        return true;
+    }
+    shares_.clear();
     float least = std::numeric_limits<float>::infinity();
-    glm::vec3 nearest(0.0f);
-    bake.far.visit(position, [&](uint32_t i) {
-        const GatheringPoint& point = bake.paths.points[i];
+    bake_.far.visit(position, [&](uint32_t i) {
+        const GatheringPoint& point = bake_.paths.points[i];
         if (glm::dot(normal, point.normal) <= 0) return;
         const float error = error_of(point, point.reach, kWideTurn, position, normal);
         if (error >= least) return;
         least = error;
-        nearest = irradiance[i];
+        shares_.assign(1, {i, 1.0f});
     });
-    return nearest;
+    return false;
 }
 
-}  // namespace
+bool PointFinder::find(const glm::vec3& position, const glm::vec3& normal) {
+    return find_within(kTurn, position, normal);
+}
+bool PointFinder::find_alike(const glm::vec3& position, const glm::vec3& normal) {
+    return find_within(kSharingTurn, position, normal);
+}
 
-glm::vec3 irradiance_at(const PathsBake& bake, std::span<const glm::vec3> irradiance,
-                        const glm::vec3& position, const glm::vec3& normal, bool& alone) {
-    return irradiance_within(bake, irradiance, kTurn, position, normal, alone);
+glm::vec3 irradiance_of(std::span<const PointShare> shares, std::span<const glm::vec3> irradiance) {
+    glm::vec3 sum(0.0f);
+    for (const PointShare& s : shares) sum += s.share * irradiance[s.point];
+    return sum;
 }
 
 std::vector<glm::vec3> smooth(const PathsBake& bake, std::span<const glm::vec3> irradiance) {
     std::vector<glm::vec3> smoothed(irradiance.size());
     parallel_ranges(smoothed.size(), kPointsAPiece, [&](size_t begin, size_t end) {
+        PointFinder finder(bake);
         for (size_t i = begin; i < end; ++i) {
             const GatheringPoint& point = bake.paths.points[i];
-            bool alone = false;
-            smoothed[i] =
-                irradiance_within(bake, irradiance, kSharingTurn, point.position, point.normal, alone);
+            finder.find_alike(point.position, point.normal);
+            smoothed[i] = irradiance_of(finder.shares(), irradiance);
         }
     });
     return smoothed;

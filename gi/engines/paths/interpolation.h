@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,12 +12,35 @@
 
 namespace lucarne::gi::paths {
 
-/// Returns the irradiance at a surface point, W/m^2, from that of the gathering points about it
-/// (`irradiance`, one each): the mean weighted by 1 - error_of(). `position` is in the bake's coordinates.
-/// If no point reaches it, the light of the one with the smallest error is taken, and `alone` set; black if
-/// there is none either.
-glm::vec3 irradiance_at(const PathsBake& bake, std::span<const glm::vec3> irradiance,
-                        const glm::vec3& position, const glm::vec3& normal, bool& alone);
+/// A gathering point and its share of the light at a place.
+struct PointShare {
+    uint32_t point = 0;
+    float share = 0;
+};
+
+/// Finds the gathering points whose light a surface point has. One finder serves many places, one after the
+/// other.
+class PointFinder {
+ public:
+    explicit PointFinder(const PathsBake& bake) : bake_(bake) {}
+    /// Finds the points about a place, in the bake's coordinates, weighted by 1 - error_of(). If none reaches
+    /// it, the one with the smallest error is taken. Returns whether any reaches it.
+    bool find(const glm::vec3& position, const glm::vec3& normal);
+    /// The same for a place whose light is blurred: only points whose normals differ little.
+    bool find_alike(const glm::vec3& position, const glm::vec3& normal);
+    /// The points found; their shares add up to 1. Empty: there is none.
+    std::span<const PointShare> shares() const { return shares_; }
+
+ private:
+    bool find_within(float turn, const glm::vec3& position, const glm::vec3& normal);
+
+    const PathsBake& bake_;
+    std::vector<PointShare> shares_, wide_;
+};
+
+/// Returns the irradiance at a place, W/m^2, from that of all gathering points (`irradiance`); black without
+/// shares.
+glm::vec3 irradiance_of(std::span<const PointShare> shares, std::span<const glm::vec3> irradiance);
 
 /// Lets gathering points share their light with those about them, as pixels do: it takes the blotches of
 /// their few rays away.

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/changes.h"
+#include "gi/engines/paths/arriving_light.h"
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/entry_light.h"
 #include "gi/engines/paths/interpolation.h"
@@ -63,6 +65,7 @@ class PathsEngine final : public Engine {
         bool operator==(const Basis&) const = default;
     };
     Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
+    const ArrivingLight* arriving_light(Frame& frame, std::span<const Material> materials);
     void add_indirect(Frame& frame);
 
     SceneRevisions scene_;
@@ -76,8 +79,10 @@ class PathsEngine final : public Engine {
     EntryLight entry_light_;
     std::unique_ptr<Relight> relight_;
     Basis light_of_;
-    std::vector<glm::vec3> irradiance_;  ///< at gathering points; empty: not known
-    size_t alone_ = 0;                   ///< pixels of the last frame that no gathering point reached
+    std::vector<glm::vec3> irradiance_;      ///< at gathering points; empty: not known
+    std::optional<ArrivingLight> arriving_;  ///< for glossy surfaces
+    bool arriving_is_old_ = true;
+    size_t alone_ = 0;  ///< pixels of the last frame that no gathering point reached
 };
 
 Result<void> PathsEngine::prepare(Frame& frame) {
@@ -89,6 +94,7 @@ Result<void> PathsEngine::prepare(Frame& frame) {
     } else if (!relight_ || &relight_->bake() != bake) {
         relight_ = std::make_unique<Relight>(bake->shared_from_this());
         irradiance_.clear();
+        arriving_.reset();
     }
     LUCARNE_TRY(upload_sky(frame, sky_));
     if (even_sky_of_ != scene_.environment) {
@@ -130,29 +136,42 @@ Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& vi
     timed(frame, "bounces", [&] { relight_->bounce({only ? last : 1, last}, s[kTransport]); });
     irradiance_ =
         timed(frame, "final gathering", [&] { return smooth(relight_->bake(), relight_->gather()); });
+    arriving_is_old_ = true;
     light_of_ = std::move(basis);
     return {};
 }
 
+/// Returns the light for glossy surfaces; null if no material is glossy.
+const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const Material> materials) {
+    if (std::ranges::none_of(materials, [](const Material& m) { return m.diffuse.w > 0; })) return nullptr;
+    if (!arriving_) arriving_.emplace(relight_->shared_bake());
+    if (std::exchange(arriving_is_old_, false))
+        timed(frame, "light by direction", [&] { arriving_->set(relight_->radiosity(), materials); });
+    return &*arriving_;
+}
+
 /// Adds what pixels reflect of the light at the gathering points about them.
 void PathsEngine::add_indirect(Frame& frame) {
-    const TimedPass pass(frame, "interpolation");
     const PathsBake& bake = relight_->bake();
-    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     const std::vector<Material> materials = device_materials(frame.materials);
+    const ArrivingLight* glossy = arriving_light(frame, materials);
+    const TimedPass pass(frame, "interpolation");
+    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
     std::atomic<size_t> alone = 0;
     parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t begin, size_t end) {
         size_t own = 0;
+        PointFinder finder(bake);
         for (size_t i = begin; i < end; ++i) {
             const SurfacePoint& at = surfaces[i];
             if (!(at.radius > 0)) continue;
-            bool is_alone = false;
-            const glm::vec3 arriving =
-                irradiance_at(bake, irradiance_, at.position - frame.bake_offset, at.normal, is_alone);
-            own += is_alone;
+            own += !finder.find(at.position - frame.bake_offset, at.normal);
+            const glm::vec3 irradiance = irradiance_of(finder.shares(), irradiance_);
             const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
-            radiance[i] += glm::vec4((r.kd + r.ks) / kPi * arriving, 0);
+            glm::vec3 reflected = r.kd / kPi * irradiance;
+            if (glossy && r.ks > 0)
+                reflected += glossy->reflected(finder.shares(), irradiance, r, at.normal, at.viewer);
+            radiance[i] += glm::vec4(reflected, 0);
         }
         alone += own;
     });

@@ -38,6 +38,8 @@ class Relight {
     void bounce(const Bounces& bounces, Transport transport);
     /// Returns the irradiance at each gathering point, W/m^2, by the light of these bounces.
     std::vector<glm::vec3> gather() const;
+    /// The radiosity of each group by these bounces, W/m^2.
+    std::span<const glm::vec3> radiosity() const { return sum_; }
 
  private:
     std::vector<glm::vec3> light_of_sky(const GatherSky& sky) const;

@@ -129,9 +129,10 @@ TEST(PathsBake, OfScenesWithoutSurfacesIsEmpty) {
         const auto bake = bake_of(input_of(surfels));
         ASSERT_NE(bake, nullptr);
         EXPECT_TRUE(bake->entries.empty());
-        bool alone = false;
         const std::vector<glm::vec3> light(bake->paths.points.size(), kO);
-        EXPECT_EQ(irradiance_at(*bake, light, kO, kZ, alone), kO);
+        PointFinder finder(*bake);
+        finder.find(kO, kZ);
+        EXPECT_EQ(irradiance_of(finder.shares(), light), kO);
     }
 }
 
@@ -140,12 +141,13 @@ TEST(Interpolation, KeepsEvenLightAndStaysOnItsSide) {
     std::vector<glm::vec3> light;
     for (const GatheringPoint& point : bake->paths.points)
         light.push_back(point.side % 2 ? kO : glm::vec3(1, 2, 3));
+    PointFinder finder(*bake);
     for (const Surfel& s : scenes::closed_box(1, 23, glm::vec3(.5f))) {
-        bool alone = true;
-        const glm::vec3 inside = irradiance_at(*bake, light, s.position, s.normal, alone);
-        EXPECT_FALSE(alone);
+        EXPECT_TRUE(finder.find(s.position, s.normal));
+        const glm::vec3 inside = irradiance_of(finder.shares(), light);
         for (int i = 0; i < 3; ++i) EXPECT_NEAR(inside[i], 1.0f + static_cast<float>(i), 1e-4f);
-        EXPECT_EQ(irradiance_at(*bake, light, s.position, -s.normal, alone), kO);
+        finder.find(s.position, -s.normal);
+        EXPECT_EQ(irradiance_of(finder.shares(), light), kO);
     }
 }
 

@@ -78,10 +78,15 @@ TEST_F(PathsEngine, ManyLampsGiveThePictureOfAFreshPreparation) {
 
 TEST_F(PathsEngine, EditedMaterialsGiveThePictureOfAFreshPreparation) {
     const Lit first = draw();
-    options_.materials[1] = scenes::material(.9f, 0, 1, .2f);
-    const Lit edited = draw();
-    EXPECT_NE(edited.radiance, first.radiance);
-    EXPECT_EQ(edited.radiance, draw_anew().radiance);
+    auto last = first.radiance;
+    for (const Material& edited :
+         {scenes::material(.9f, 0, 1, .2f), scenes::material(.5f, .4f, 20), scenes::material(.5f, .4f, 9)}) {
+        options_.materials[1] = edited;
+        const Lit lit = draw();
+        EXPECT_NE(lit.radiance, last);
+        EXPECT_EQ(lit.radiance, draw_anew().radiance);
+        last = lit.radiance;
+    }
 }
 
 TEST_F(PathsEngine, ALampMoreOrLessGivesThePictureOfAFreshPreparation) {

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/engines/paths/bake.h"
+#include "gi/engines/paths/interpolation.h"
+#include "gi/shared/brdf.h"
+
+namespace lucarne::gi::paths {
+
+/// The share of even light that a lobe with ks = 1 reflects, for any direction of the light that leaves: the
+/// integral of specular_brdf() times the cosine.
+class LobeAlbedo {
+ public:
+    explicit LobeAlbedo(float exponent);
+    /// `cosine`: of the angle between the normal and the direction in which the light leaves.
+    float at(float cosine) const;
+
+ private:
+    static constexpr uint32_t kSteps = 32;
+    std::array<float, kSteps + 1> values_{};
+};
+
+/// Light that arrives at gathering points, sorted by direction, for what glossy surfaces reflect of it. Yue
+/// et al. 2007 keep 128 directions; here these are the cells of an octahedral map of kSide x kSide. Lobes are
+/// evaluated with an exponent of at most kLargestExponent, about two cells wide: narrower ones (exponents
+/// over 28) look as wide.
+class ArrivingLight {
+ public:
+    static constexpr uint32_t kSide = 12, kCells = kSide * kSide;
+    static constexpr float kLargestExponent = kCells / 4;
+
+    explicit ArrivingLight(std::shared_ptr<const PathsBake> bake);
+    /// Takes the radiosity of all groups, W/m^2, and notes which lobes are asked for.
+    void set(std::span<const glm::vec3> radiosity, std::span<const Material> materials);
+
+    /// Returns the radiance that a surface reflects by its lobe in the direction `to`. `about`: its gathering
+    /// points, whose mean irradiance is `irradiance`, W/m^2. The material must be one of set().
+    glm::vec3 reflected(std::span<const PointShare> about, const glm::vec3& irradiance,
+                        const Reflectance& surface, const glm::vec3& normal, const glm::vec3& to) const;
+
+ private:
+    std::shared_ptr<const PathsBake> bake_;
+    std::vector<uint8_t> cell_of_;  ///< of each ray of each point
+    std::vector<uint8_t> rays_in_;  ///< of each cell of each point
+    std::vector<glm::vec3> light_;  ///< of each cell of each point: sum of the radiosities that its rays meet
+    std::array<glm::vec3, kCells> directions_{};
+    std::map<float, LobeAlbedo> albedos_;  ///< by exponent
+};
+
+}  // namespace lucarne::gi::paths
