@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -20,6 +21,14 @@ inline double quantile(std::vector<double> values, double share) {
 /// Returns the upper median.
 inline double median(std::vector<double> values) {
     return quantile(std::move(values), 0.5);
+}
+
+/// Calls `work` and returns how long it took, ms.
+template <class Work>
+double milliseconds_of(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace lucarne::bench

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -22,18 +21,11 @@
 #include "tests/bench/all_surfels.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/gathered_figures.h"
+#include "tests/bench/quantile.h"
 #include "tests/bench/rows.h"
 #include "tests/bench/voxel_models.h"
 
 namespace lucarne::bench {
-
-/// Calls `work` and returns how long it took, ms.
-template <class Work>
-double milliseconds_of(const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Table 3 for one mesh: times and counts of both methods by the limit on vertices.
 inline Result<void> row_of_table_3(gi::Device& device, const VoxelModel& model, uint32_t voxels) {
