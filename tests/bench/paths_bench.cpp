@@ -79,23 +79,25 @@ Result<void> bench_frames(gi::Device& device, const Scan& scan, const BenchRun& 
         for (gi::SceneMaterial& material : scene.materials) material.diffuse *= .99;
         return stage.pipeline().set_scene(std::move(scene));
     };
-    double direct = 0;
+    double direct = 0, direct_cpu = 0;
     for (const std::string engine : {"direct", "paths"}) {
         LUCARNE_TRY(stage.pipeline().set_engine(engine));
         LUCARNE_TRY(stage.frames(settings, 1));  // loads, and reads the paths
         LUCARNE_ASSIGN(const auto moved, stage.frames_after(run.frames(9), glide));
         if (engine == "direct") {
-            direct = moved.milliseconds;
+            direct = moved.milliseconds, direct_cpu = moved.processor;
             figure("512x512, direct light, the camera moves", direct, "ms");
             continue;
         }
         row("512x512, paths, the camera moves: beyond direct light", moved.milliseconds - direct, "ms", 20);
+        figure("  of all cores", moved.processor - direct_cpu, "ms");
     }
     LUCARNE_ASSIGN(const auto edited, stage.frames_after(run.frames(5), dim));
     print_relight("materials edited: light anew, four bounces", edited, 120);
     LUCARNE_ASSIGN(const auto lamp, stage.frames_after(run.frames(5), move_lamp));
     print_relight("a lamp moved: light anew, four bounces", lamp, 120);
     row("512x512, a lamp moves, four bounces: a frame", lamp.milliseconds, "ms", 280);
+    figure("  of all cores", lamp.processor, "ms");
     return {};
 }
 

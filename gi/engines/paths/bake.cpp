@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gi/bounce_options.h"
+#include "gi/engines/paths/interpolation.h"
 #include "gi/engines/paths/options.h"
 #include "gi/engines/paths/path_builder.h"
 #include "gi/engines/paths/store.h"
@@ -136,6 +137,7 @@ class PathsPrecomputation final : public Precomputation {
         bake->far = PointCells(paths.points, kFarReach);
         bake->paths = std::move(paths);
         bake->seed = input.settings[kSeed];
+        bake->sharing = find_sharing(*bake);
         bake_ = std::move(bake);
         return {};
     }

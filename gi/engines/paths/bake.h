@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -34,6 +35,22 @@ struct Entry {
     uint32_t material = 0;
 };
 
+/// A gathering point and its share of the light at a place.
+struct PointShare {
+    uint32_t point = 0;
+    float share = 0;
+};
+
+/// The gathering points of many places.
+struct Sharing {
+    std::vector<uint32_t> first;  ///< of each place: where its shares begin; and their end
+    std::vector<PointShare> shares;
+
+    std::span<const PointShare> of(size_t place) const {
+        return std::span(shares).subspan(first[place], first[place + 1] - first[place]);
+    }
+};
+
 /// The result of the precomputation. An engine may keep it longer than a frame.
 class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBake> {
  public:
@@ -42,6 +59,7 @@ class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBa
     std::vector<Entry> entries;  ///< of paths.entries
     PointCells near;             ///< of the gathering points, with their reaches on pixels
     PointCells far;              ///< likewise, for pixels that no reach covers
+    Sharing sharing;             ///< of the gathering points, with each other
 };
 
 extern const Precomputes kPathsPrecomputes;

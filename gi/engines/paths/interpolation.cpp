@@ -16,7 +16,7 @@ namespace {
 constexpr float kTurn = 0.29403f, kSharingTurn = 0.17235f, kWideTurn = 0.48369f;
 /// Pixels with less weight than this in all take the nearest point.
 constexpr float kLeastSum = 1e-3f;
-constexpr size_t kPointsAPiece = 256;
+constexpr size_t kPlacesAPiece = 256;
 
 }  // namespace
 
@@ -68,16 +68,39 @@ glm::vec3 irradiance_of(std::span<const PointShare> shares, std::span<const glm:
     return sum;
 }
 
+Sharing find_sharing(const PathsBake& bake, size_t places,
+                     const std::function<bool(PointFinder&, size_t)>& find) {
+    std::vector<std::vector<PointShare>> of_pieces((places + kPlacesAPiece - 1) / kPlacesAPiece);
+    Sharing sharing;
+    sharing.first.assign(places + 1, 0);
+    parallel_ranges(of_pieces.size(), 1, [&](size_t begin, size_t end) {
+        PointFinder finder(bake);
+        for (size_t piece = begin; piece < end; ++piece)
+            for (size_t i = piece * kPlacesAPiece; i < std::min((piece + 1) * kPlacesAPiece, places); ++i) {
+                if (!find(finder, i)) continue;
+                const std::span<const PointShare> found = finder.shares();
+                of_pieces[piece].insert(of_pieces[piece].end(), found.begin(), found.end());
+                sharing.first[i + 1] = static_cast<uint32_t>(found.size());
+            }
+    });
+    for (size_t i = 0; i < places; ++i) sharing.first[i + 1] += sharing.first[i];
+    sharing.shares.reserve(sharing.first.back());
+    for (const auto& piece : of_pieces)
+        sharing.shares.insert(sharing.shares.end(), piece.begin(), piece.end());
+    return sharing;
+}
+
+Sharing find_sharing(const PathsBake& bake) {
+    const std::vector<GatheringPoint>& points = bake.paths.points;
+    return find_sharing(bake, points.size(), [&](PointFinder& finder, size_t i) {
+        finder.find_alike(points[i].position, points[i].normal);
+        return true;
+    });
+}
+
 std::vector<glm::vec3> smooth(const PathsBake& bake, std::span<const glm::vec3> irradiance) {
     std::vector<glm::vec3> smoothed(irradiance.size());
-    parallel_ranges(smoothed.size(), kPointsAPiece, [&](size_t begin, size_t end) {
-        PointFinder finder(bake);
-        for (size_t i = begin; i < end; ++i) {
-            const GatheringPoint& point = bake.paths.points[i];
-            finder.find_alike(point.position, point.normal);
-            smoothed[i] = irradiance_of(finder.shares(), irradiance);
-        }
-    });
+    for (size_t i = 0; i < smoothed.size(); ++i) smoothed[i] = irradiance_of(bake.sharing.of(i), irradiance);
     return smoothed;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -11,12 +12,6 @@
 #include "gi/host_frame.h"
 
 namespace lucarne::gi::paths {
-
-/// A gathering point and its share of the light at a place.
-struct PointShare {
-    uint32_t point = 0;
-    float share = 0;
-};
 
 /// Finds the gathering points whose light a surface point has. One finder serves many places, one after the
 /// other.
@@ -42,8 +37,14 @@ class PointFinder {
 /// shares.
 glm::vec3 irradiance_of(std::span<const PointShare> shares, std::span<const glm::vec3> irradiance);
 
-/// Lets gathering points share their light with those about them, as pixels do: it takes the blotches of
-/// their few rays away.
+/// Returns the points of many places. `find(finder, place)` finds those of one, and returns false if it has
+/// none.
+Sharing find_sharing(const PathsBake& bake, size_t places,
+                     const std::function<bool(PointFinder&, size_t)>& find);
+/// Returns which points each gathering point shares its light with: those about it, as pixels do.
+Sharing find_sharing(const PathsBake& bake);
+
+/// Lets gathering points share their light: it takes the blotches of their few rays away.
 std::vector<glm::vec3> smooth(const PathsBake& bake, std::span<const glm::vec3> irradiance);
 
 }  // namespace lucarne::gi::paths

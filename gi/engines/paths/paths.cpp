@@ -1,7 +1,6 @@
 #include "gi/engines/paths/paths.h"
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,6 +16,7 @@
 #include "gi/engines/paths/entry_light.h"
 #include "gi/engines/paths/interpolation.h"
 #include "gi/engines/paths/options.h"
+#include "gi/engines/paths/pixel_points.h"
 #include "gi/engines/paths/relight.h"
 #include "gi/gather/gather_sky.h"
 #include "gi/gl_frame.h"
@@ -82,6 +82,7 @@ class PathsEngine final : public Engine {
     std::vector<glm::vec3> irradiance_;      ///< at gathering points; empty: not known
     std::optional<ArrivingLight> arriving_;  ///< for glossy surfaces
     bool arriving_is_old_ = true;
+    PixelPoints pixel_points_;
     size_t alone_ = 0;  ///< pixels of the last frame that no gathering point reached
 };
 
@@ -95,6 +96,7 @@ Result<void> PathsEngine::prepare(Frame& frame) {
         relight_ = std::make_unique<Relight>(bake->shared_from_this());
         irradiance_.clear();
         arriving_.reset();
+        pixel_points_ = {};
     }
     LUCARNE_TRY(upload_sky(frame, sky_));
     if (even_sky_of_ != scene_.environment) {
@@ -156,26 +158,26 @@ void PathsEngine::add_indirect(Frame& frame) {
     const std::vector<Material> materials = device_materials(frame.materials);
     const ArrivingLight* glossy = arriving_light(frame, materials);
     const TimedPass pass(frame, "interpolation");
-    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    const std::vector<GBufferTexel> texels = download_gbuffer(frame);
+    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
-    std::atomic<size_t> alone = 0;
-    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t begin, size_t end) {
-        size_t own = 0;
-        PointFinder finder(bake);
-        for (size_t i = begin; i < end; ++i) {
-            const SurfacePoint& at = surfaces[i];
-            if (!(at.radius > 0)) continue;
-            own += !finder.find(at.position - frame.bake_offset, at.normal);
-            const glm::vec3 irradiance = irradiance_of(finder.shares(), irradiance_);
-            const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
-            glm::vec3 reflected = r.kd / kPi * irradiance;
-            if (glossy && r.ks > 0)
-                reflected += glossy->reflected(finder.shares(), irradiance, r, at.normal, at.viewer);
-            radiance[i] += glm::vec4(reflected, 0);
-        }
-        alone += own;
-    });
-    alone_ = alone;
+    for (size_t first = 0; first < surfaces.size(); first += PixelPoints::kMostPixels) {
+        pixel_points_.find(bake, frame.camera, texels, surfaces, frame.bake_offset, first);
+        alone_ += pixel_points_.alone();
+        parallel_ranges(pixel_points_.count(), kPixelsATask, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const SurfacePoint& at = surfaces[first + i];
+                const std::span<const PointShare> about = pixel_points_.of(i);
+                if (about.empty()) continue;
+                const glm::vec3 irradiance = irradiance_of(about, irradiance_);
+                const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
+                glm::vec3 reflected = r.kd / kPi * irradiance;
+                if (glossy && r.ks > 0)
+                    reflected += glossy->reflected(about, irradiance, r, at.normal, at.viewer);
+                radiance[first + i] += glm::vec4(reflected, 0);
+            }
+        });
+    }
     upload_radiance(frame, radiance);
 }
 
