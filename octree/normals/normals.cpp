@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/normals/orientation/orientation.h"
+#include "octree/normals/estimate_range.h"
 #include "octree/normals/surface/chunk_surface.h"
 #include "octree/normals/surface/edge_agreement.h"
 
@@ -144,8 +144,8 @@ float in_squares(float area, double length) {
 }
 
 /// Converts results from sites to points, in their stored order. The points of a site share its area. `unit`
-/// is the length unit of the estimate's areas, in the wanted unit.
-ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
+/// is the length unit of the estimate's areas, in the wanted unit. `sites_too`: also site_normals.
+ChunkNormals points_of(const ChunkEstimate& estimate, double unit, bool sites_too) {
     const auto sites = static_cast<uint32_t>(estimate.neighbours.site_count());
     const size_t points = estimate.neighbours.point_count();
     ChunkNormals normals;
@@ -153,6 +153,7 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     normals.areas.resize(points);
     normals.components.resize(points);
     normals.edges.resize(points);
+    if (sites_too) normals.site_normals.resize(points);
     auto side = estimate.surface.sides.begin();
     auto line = estimate.surface.lines.begin();
     for (uint32_t site = 0; site < sites; ++site) {
@@ -170,6 +171,7 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
                         glm::dot(line->normal, normal) < 0 ? turned(line->beyond) : line->beyond};
         for (const uint32_t point : members) {
             normals.normals[point] = normal;
+            if (sites_too) normals.site_normals[point] = estimate.surface.normals[site];
             normals.edges[point] = edge;
             normals.areas[point] = in_squares(area, unit);
             normals.components[point] = estimate.orientation.components[site];
@@ -178,11 +180,11 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     return normals;
 }
 
-/// Returns the end of the range of chunks from `first` on that fit into the memory together; at least one.
-size_t wave_end(const ChunkAccess& chunks, size_t first, uint64_t memory) {
+/// Returns the end of the range of chunks [first, most) that fit into the memory together; at least one.
+size_t wave_end(const ChunkAccess& chunks, size_t first, size_t most, uint64_t memory) {
     uint64_t bytes = 0;
     size_t end = first;
-    for (; end < chunks.chunk_count(); ++end) {
+    for (; end < most; ++end) {
         bytes += chunks.point_count(end) * kNormalBytesPerPoint;
         if (end > first && bytes > memory) break;
     }
@@ -194,15 +196,25 @@ size_t wave_end(const ChunkAccess& chunks, size_t first, uint64_t memory) {
 Result<OrientationSigns> estimate_normals(
     const ChunkAccess& chunks, const NormalOptions& options,
     const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink) {
+    OrientationMerger merger;
+    const ChunkRange all{0, chunks.chunk_count()};
+    LUCARNE_TRY(estimate_range(chunks, all, options, sink, [&](ChunkVotes&& votes) { merger.add(votes); }));
+    return merger.signs();
+}
+
+Result<std::vector<BorderMessage>> estimate_range(
+    const ChunkAccess& chunks, ChunkRange range, const NormalOptions& options,
+    const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink,
+    const std::function<void(ChunkVotes&&)>& orient) {
     if (options.neighbours < 3 || options.neighbours > kMostNormalNeighbours)
         return bad_arguments("normals", fmt::format("{} neighbours; must be 3 to {}", options.neighbours,
                                                     kMostNormalNeighbours));
     const ThreadLimit threads(options.threads);
     ChunkCache cache(chunks, options.memory / 8);
     const double unit = 1 / cache.scale() / options.area_unit;
-    OrientationMerger merger(chunks.chunk_count());
-    for (size_t first = 0, last; first < chunks.chunk_count(); first = last) {
-        last = wave_end(chunks, first, options.memory / 2);
+    BorderMail mail(range.end);
+    for (size_t first = range.first, last; first < range.end; first = last) {
+        last = wave_end(chunks, first, range.end, options.memory / 2);
         std::vector<std::optional<ChunkEstimate>> wave(last - first);
         FirstError error;
         parallel_ranges(wave.size(), 1, [&](size_t i, size_t) {
@@ -214,18 +226,18 @@ Result<OrientationSigns> estimate_normals(
                 error.report(i, std::move(estimate).error());
         });
         LUCARNE_TRY(error.result());
-        for (const auto& estimate : wave)
-            if (estimate)
-                merger.add(estimate->neighbours, estimate->surface, estimate->orientation);
-            else
-                merger.add_empty();
+        for (size_t i = 0; i < wave.size(); ++i)
+            orient(wave[i] ? mail.finish(static_cast<uint32_t>(first + i), wave[i]->neighbours,
+                                         wave[i]->surface, wave[i]->orientation)
+                           : ChunkVotes{});
         parallel_ranges(wave.size(), 1, [&](size_t i, size_t) {
-            auto done = sink(first + i, wave[i] ? points_of(*wave[i], unit) : ChunkNormals{});
+            auto done =
+                sink(first + i, wave[i] ? points_of(*wave[i], unit, options.site_normals) : ChunkNormals{});
             if (!done) error.report(i, std::move(done).error());
         });
         LUCARNE_TRY(error.result());
     }
-    return merger.signs();
+    return mail.take_outgoing();
 }
 
 }  // namespace lucarne::octree

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -16,6 +17,12 @@ struct Box {
     glm::dvec3 min{0.0}, max{0.0};
 };
 
+/// Chunks [first, end).
+struct ChunkRange {
+    size_t first = 0, end = 0;
+    bool contains(size_t chunk) const { return chunk >= first && chunk < end; }
+};
+
 /// Gives the normal estimator access to the chunks of an out-of-core build. Chunks are disjoint boxes that
 /// together hold every point. All calls are thread-safe.
 class ChunkAccess {
@@ -26,6 +33,16 @@ class ChunkAccess {
     virtual uint64_t point_count(size_t chunk) const = 0;
     /// Returns the positions of a chunk's points in their stored order.
     virtual Result<std::vector<glm::dvec3>> positions(size_t chunk) const = 0;
+    /// Points of a chunk with their indices in its stored order.
+    struct Part {
+        std::vector<uint32_t> indices;
+        std::vector<glm::dvec3> positions;
+    };
+    /// Returns the points of a chunk in a box, where reading the whole chunk is expensive because another
+    /// process has it. Empty where it is not: then call positions().
+    virtual Result<std::optional<Part>> far_points(size_t /*chunk*/, const Box& /*box*/) const {
+        return std::nullopt;
+    }
     /// Returns, for each point, the index into NormalOptions::stations of the station that saw it, -1 where
     /// unknown.
     virtual Result<std::vector<int32_t>> stations(size_t chunk) const = 0;
@@ -50,7 +67,8 @@ struct NormalOptions {
     std::vector<glm::dvec3> stations;
     uint64_t memory = uint64_t{1} << 30;  ///< bytes that this stage may use in total
     unsigned threads = 0;
-    bool normals = true;  ///< false: the normals are not oriented, because the input has its own
+    bool normals = true;        ///< false: the normals are not oriented, because the input has its own
+    bool site_normals = false;  ///< also return ChunkNormals::site_normals
     /// Length of the unit square in which areas are returned. Floats can represent the squares of neither
     /// 1e30 nor 1e-30, so for clouds of unknown size the caller passes the cloud's own extent.
     double area_unit = 1;
@@ -72,6 +90,9 @@ struct ChunkNormals {
     std::vector<float> areas;  ///< share of the surface (area_unit squared), 0 if unknown, or kStrayArea
     std::vector<PointEdge> edges;
     std::vector<uint32_t> components;  ///< the orientation component of the chunk to which each point belongs
+    /// The normals of the neighbourhoods, which vote on the orientation; beside a crease, a point's own is
+    /// that of its side. Empty unless NormalOptions::site_normals.
+    std::vector<glm::vec3> site_normals;
 };
 
 /// signs[chunk][component]: +1 keeps, -1 flips the normals of that component.

@@ -47,6 +47,26 @@ Box ChunkCache::bounds(size_t chunk) const {
     return {box.min * scale_, box.max * scale_};
 }
 
+Result<Positions> ChunkCache::scaled(std::vector<glm::dvec3> positions) const {
+    for (auto& p : positions) {
+        p *= scale_;
+        if (!is_finite(p)) return rejected("normals", "a coordinate is not a finite number");
+    }
+    return std::make_shared<const std::vector<glm::dvec3>>(std::move(positions));
+}
+
+Result<ChunkCache::Near> ChunkCache::near(size_t chunk, const Box& box) {
+    Near near;
+    LUCARNE_ASSIGN(auto far, chunks_.far_points(chunk, {box.min / scale_, box.max / scale_}));
+    if (far) {
+        near.indices = std::move(far->indices);
+        LUCARNE_ASSIGN(near.positions, scaled(std::move(far->positions)));
+    } else {
+        LUCARNE_ASSIGN(near.positions, positions(chunk));
+    }
+    return near;
+}
+
 Result<Positions> ChunkCache::positions(size_t chunk) {
     {
         const std::lock_guard lock(mutex_);
@@ -57,11 +77,7 @@ Result<Positions> ChunkCache::positions(size_t chunk) {
     }
     // Loads without the lock, so that other threads continue. At worst, the same chunk is read twice.
     LUCARNE_ASSIGN(auto loaded, chunks_.positions(chunk));
-    for (auto& p : loaded) {
-        p *= scale_;
-        if (!is_finite(p)) return rejected("normals", "a coordinate is not a finite number");
-    }
-    auto positions = std::make_shared<const std::vector<glm::dvec3>>(std::move(loaded));
+    LUCARNE_ASSIGN(auto positions, scaled(std::move(loaded)));
 
     const std::lock_guard lock(mutex_);
     if (found_.contains(chunk)) return positions;

@@ -26,6 +26,14 @@ class ChunkCache {
     /// Returns a chunk's positions, scaled. Errors: what ChunkAccess::positions reports; a coordinate that is
     /// not a finite number.
     Result<Positions> positions(size_t chunk);
+    /// Points of a chunk, scaled.
+    struct Near {
+        Positions positions;
+        std::vector<uint32_t> indices;  ///< in the chunk's stored order; empty: `positions` are all of them
+        uint32_t index(size_t i) const { return indices.empty() ? static_cast<uint32_t>(i) : indices[i]; }
+    };
+    /// Returns at least the points of a chunk in a scaled box.
+    Result<Near> near(size_t chunk, const Box& box);
     Box bounds(size_t chunk) const;  ///< scaled
 
  private:
@@ -33,6 +41,8 @@ class ChunkCache {
         size_t chunk;
         Positions positions;
     };
+    Result<Positions> scaled(std::vector<glm::dvec3> positions) const;
+
     const ChunkAccess& chunks_;
     uint64_t limit_, held_ = 0;
     double scale_;

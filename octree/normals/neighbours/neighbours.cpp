@@ -264,13 +264,13 @@ Result<bool> ChunkNeighbours::load_halo(std::span<const Pending> pending, double
         Box wanted = bounds_of(near);
         wanted.min -= radius;
         wanted.max += radius;
-        LUCARNE_ASSIGN(const auto points, cache_->positions(other.chunk));
-        for (size_t i = 0; i < points->size(); ++i) {
-            const glm::dvec3& p = (*points)[i];
+        LUCARNE_ASSIGN(const auto points, cache_->near(other.chunk, wanted));
+        for (size_t i = 0; i < points.positions->size(); ++i) {
+            const glm::dvec3& p = (*points.positions)[i];
             if (distance2(p, wanted) > 0 || !cells.contains(p)) continue;
             if (found.size() == most) return false;
             found.push_back(p);
-            refs.push_back({other.chunk, static_cast<uint32_t>(i)});
+            refs.push_back({other.chunk, points.index(i)});
         }
     }
     for (const uint32_t i : morton_order(found)) {

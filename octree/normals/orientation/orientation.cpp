@@ -136,51 +136,58 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
     return orientation;
 }
 
-void OrientationMerger::add_empty() {
-    first_component_.push_back(static_cast<uint32_t>(components_.size()));
+void VoteSums::add(const ComponentVote& vote) {
+    const auto [at, first] = index_.try_emplace({vote.chunk, vote.component, vote.own}, votes_.size());
+    if (first) votes_.push_back({vote.chunk, vote.component, vote.own, 0});
+    votes_[at->second].same += vote.same;
 }
 
-void OrientationMerger::add(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
-                            const ChunkOrientation& orientation) {
-    const uint32_t base = first_component_.back();
-    components_.resize(components_.size() + orientation.count);
-    components_[base].anchored = orientation.anchored;
+ComponentVote BorderMessage::heard(const glm::vec3& other, uint32_t own) const {
+    const Agreement a = agreement(normal, other, offset);
+    const double weight = 1.0 - a.doubt;
+    return {chunk, component, own, a.opposite ? -weight : weight};
+}
+
+ChunkVotes BorderMail::finish(uint32_t chunk, const ChunkNeighbours& neighbours, const ChunkSurface& surface,
+                              const ChunkOrientation& orientation) {
+    ChunkVotes votes;
+    votes.components.resize(orientation.count);
+    votes.components[0].anchored = orientation.anchored;
     const auto each = [&](auto&& visit) {
         for (uint32_t site = 0; site < surface.normals.size(); ++site)
             if (has_normal(surface.normals[site]))
-                visit(components_[base + orientation.components[site]].shell, site);
+                visit(votes.components[orientation.components[site]].shell, site);
     };
     each([&](Shell& shell, uint32_t site) { shell.extend(neighbours.position(site)); });
     each([&](Shell& shell, uint32_t site) {
         shell.add(neighbours.position(site), surface.normals[site], surface.areas[site]);
     });
-    hear(neighbours, surface, orientation);
-    tell(surface, orientation);
-    add_empty();  // closes this chunk's range
+    votes.votes = hear(chunk, neighbours, surface, orientation);
+    tell(chunk, surface, orientation);
+    return votes;
 }
 
-void OrientationMerger::hear(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
-                             const ChunkOrientation& orientation) {
-    const size_t chunk = first_component_.size() - 1;
-    auto inbox = std::exchange(inboxes_[chunk], {});
-    if (inbox.empty()) return;
+std::vector<ComponentVote> BorderMail::hear(uint32_t chunk, const ChunkNeighbours& neighbours,
+                                            const ChunkSurface& surface,
+                                            const ChunkOrientation& orientation) {
+    const auto inbox = std::exchange(inboxes_[chunk], {});
+    if (inbox.empty()) return {};
     std::vector<uint32_t> site_of;
     for (uint32_t site = 0; site < surface.normals.size(); ++site)
         for (const uint32_t point : neighbours.members(site)) {
             if (site_of.size() <= point) site_of.resize(point + 1);
             site_of[point] = site;
         }
-    for (const Message& message : inbox) {
+    VoteSums votes;
+    for (const BorderMessage& message : inbox) {
         const uint32_t site = site_of[message.index];
         if (!has_normal(surface.normals[site])) continue;
-        const Agreement a = agreement(message.normal, surface.normals[site], message.offset);
-        const uint32_t component = first_component_.back() + orientation.components[site];
-        votes_.add(message.component, component, a.opposite, 1.0 - a.doubt);
+        votes.add(message.heard(surface.normals[site], orientation.components[site]));
     }
+    return votes.take();
 }
 
-void OrientationMerger::tell(const ChunkSurface& surface, const ChunkOrientation& orientation) {
-    const size_t chunk = first_component_.size() - 1;
+void BorderMail::tell(uint32_t chunk, const ChunkSurface& surface, const ChunkOrientation& orientation) {
     struct Letter {
         uint32_t chunk, component, edge;
     };
@@ -197,16 +204,26 @@ void OrientationMerger::tell(const ChunkSurface& surface, const ChunkOrientation
         for (last = first; last < letters.size() && letters[last].chunk == letters[first].chunk &&
                            letters[last].component == letters[first].component;)
             ++last;
+        const uint32_t to = letters[first].chunk;
+        auto& box = to < inboxes_.size() ? inboxes_[to] : outgoing_;
         const size_t stride = (last - first + kVotesPerPair - 1) / kVotesPerPair;
         for (size_t i = first; i < last; i += stride) {
             const BorderEdge& edge = surface.border[letters[i].edge];
-            inboxes_[letters[i].chunk].push_back({first_component_.back() + letters[i].component,
-                                                  edge.other.index, surface.normals[edge.site], edge.offset});
+            box.push_back(
+                {chunk, letters[i].component, to, edge.other.index, surface.normals[edge.site], edge.offset});
         }
     }
 }
 
-std::vector<std::vector<int8_t>> OrientationMerger::signs() const {
+void OrientationMerger::add(const ChunkVotes& chunk) {
+    const uint32_t base = first_component_.back();
+    components_.insert(components_.end(), chunk.components.begin(), chunk.components.end());
+    for (const ComponentVote& vote : chunk.votes)
+        votes_.add(first_component_[vote.chunk] + vote.component, base + vote.own, vote.same);
+    first_component_.push_back(static_cast<uint32_t>(components_.size()));
+}
+
+OrientationSigns OrientationMerger::signs() const {
     const auto count = static_cast<uint32_t>(components_.size());
     SignedForest forest(count + 1);  // the last node represents the stations
     for (uint32_t c = 0; c < count; ++c)
@@ -219,7 +236,7 @@ std::vector<std::vector<int8_t>> OrientationMerger::signs() const {
         wholes[root.node].join(components_[c].shell, root.opposite);
     }
     const auto stations = forest.find(count);
-    std::vector<std::vector<int8_t>> signs(first_component_.size() - 1);
+    OrientationSigns signs(first_component_.size() - 1);
     for (size_t chunk = 0; chunk < signs.size(); ++chunk) {
         const uint32_t first = first_component_[chunk], last = first_component_[chunk + 1];
         signs[chunk].assign(std::max(1u, last - first), 1);

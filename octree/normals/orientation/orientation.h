@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -39,41 +42,84 @@ struct ChunkOrientation {
 ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& surface,
                               std::span<const int8_t> toward);
 
-/// Joins the components of all chunks: builds a signed graph whose edges are votes of point pairs across
-/// chunk borders, and its maximum spanning forest. Takes the chunks in ascending order. Holds the messages
-/// from finished chunks to unfinished ones (at most kVotesPerPair edges a pair of component and chunk), and a
-/// few words a component.
-class OrientationMerger {
- public:
-    explicit OrientationMerger(size_t chunks) : inboxes_(chunks), first_component_(1, 0) {}
+/// A vote on how a component of one chunk agrees with one of an earlier chunk: the sum over the pairs of
+/// points that stand for them.
+struct ComponentVote {
+    uint32_t chunk = 0, component = 0;  ///< the earlier one
+    uint32_t own = 0;                   ///< the component of the chunk that has the vote
+    double same = 0;                    ///< > 0: the same orientation
+};
 
-    /// Adds the next chunk. Chunks without points must be added, too, by add_empty().
-    void add(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
-             const ChunkOrientation& orientation);
-    void add_empty();
-
-    /// Returns +1 (keep) or -1 (flip) for every chunk and component. Connected surfaces that no station
-    /// anchors are flipped as a whole to face the side that was seen, which their shape tells (Shell).
-    std::vector<std::vector<int8_t>> signs() const;
-
- private:
-    struct Message {  ///< an edge, as the finished chunk sees it
-        uint32_t component, index;
-        glm::vec3 normal, offset;
-    };
+/// What one chunk contributes to the orientation of all.
+struct ChunkVotes {
     struct Component {
         Shell shell;
         bool anchored = false;
     };
-    /// Turns the messages for this chunk into votes.
-    void hear(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
-              const ChunkOrientation& orientation);
-    /// Sends the chunk's border edges as messages to the chunks that come later.
-    void tell(const ChunkSurface& surface, const ChunkOrientation& orientation);
+    std::vector<Component> components;
+    std::vector<ComponentVote> votes;
+};
 
-    std::vector<std::vector<Message>> inboxes_;  ///< messages to each chunk that is not yet added
-    std::vector<uint32_t> first_component_;      ///< of each chunk added so far, and the end
-    std::vector<Component> components_;
+/// Sums up the votes of a chunk by pairs of components, in the order in which the pairs come.
+class VoteSums {
+ public:
+    void add(const ComponentVote& vote);
+    std::vector<ComponentVote> take() { return std::move(votes_); }
+
+ private:
+    std::vector<ComponentVote> votes_;
+    std::map<std::tuple<uint32_t, uint32_t, uint32_t>, size_t> index_;  ///< in votes_, by components
+};
+
+/// An edge between two chunks, as the earlier one sees it.
+struct BorderMessage {
+    uint32_t chunk, component;  ///< where it comes from
+    uint32_t to, index;         ///< the point in the later chunk
+    glm::vec3 normal, offset;
+
+    /// Returns the vote of the later chunk, where the point has a `normal` and belongs to `own`.
+    ComponentVote heard(const glm::vec3& other, uint32_t own) const;
+};
+
+/// Carries the border edges of finished chunks to later ones. Takes the chunks of one process in ascending
+/// order. Holds the messages from finished chunks to unfinished ones (at most kVotesPerPair edges a pair of
+/// component and chunk).
+class BorderMail {
+ public:
+    /// Chunks from `end` on belong to other processes.
+    explicit BorderMail(size_t end) : inboxes_(end) {}
+
+    /// Finishes a chunk.
+    ChunkVotes finish(uint32_t chunk, const ChunkNeighbours& neighbours, const ChunkSurface& surface,
+                      const ChunkOrientation& orientation);
+    /// Returns the messages to chunks from `end` on, in the order of the chunks that sent them.
+    std::vector<BorderMessage> take_outgoing() { return std::move(outgoing_); }
+
+ private:
+    /// Turns the messages for this chunk into votes.
+    std::vector<ComponentVote> hear(uint32_t chunk, const ChunkNeighbours& neighbours,
+                                    const ChunkSurface& surface, const ChunkOrientation& orientation);
+    /// Sends the chunk's border edges as messages to the chunks that come later.
+    void tell(uint32_t chunk, const ChunkSurface& surface, const ChunkOrientation& orientation);
+
+    std::vector<std::vector<BorderMessage>> inboxes_;  ///< messages to each chunk that is not finished
+    std::vector<BorderMessage> outgoing_;
+};
+
+/// Joins the components of all chunks: builds a signed graph of their votes, and its maximum spanning forest.
+/// Holds a few words a component.
+class OrientationMerger {
+ public:
+    /// Adds the next chunk, in ascending order. A chunk without points has no components.
+    void add(const ChunkVotes& chunk);
+
+    /// Returns +1 (keep) or -1 (flip) for every chunk and component. Connected surfaces that no station
+    /// anchors are flipped as a whole to face the side that was seen, which their shape tells (Shell).
+    OrientationSigns signs() const;
+
+ private:
+    std::vector<uint32_t> first_component_{0};  ///< of each chunk added so far, and the end
+    std::vector<ChunkVotes::Component> components_;
     SignVotes votes_;  ///< between components
 };
 

@@ -56,9 +56,9 @@ class SignedForest {
 class SignVotes {
  public:
     /// `weight` must be positive.
-    void add(uint32_t a, uint32_t b, bool opposite, double weight) {
-        votes_[key(a, b)] += opposite ? -weight : weight;
-    }
+    void add(uint32_t a, uint32_t b, bool opposite, double weight) { add(a, b, opposite ? -weight : weight); }
+    /// `same` is positive for the same orientation, negative for the opposite one.
+    void add(uint32_t a, uint32_t b, double same) { votes_[key(a, b)] += same; }
     /// Joins nodes by their votes, along the maximum spanning forest, strongest votes first. Then checks each
     /// link against all votes between the two sides that it joins, because one false link between two halves
     /// of a room turns one of them inside out.
