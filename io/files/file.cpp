@@ -19,6 +19,7 @@ using file_io::folder_of;
 using file_io::read_exactly;
 using file_io::read_up_to;
 using file_io::reason;
+using file_io::remove_at_interrupt;
 using file_io::write_all;
 
 namespace {
@@ -31,13 +32,6 @@ std::filesystem::path unused_name(const std::filesystem::path& folder) {
         auto name = folder / fmt::format(".lucarne-{}-{}.part", ::getpid(), n);
         if (::lstat(name.c_str(), &status) != 0) return name;
     }
-}
-
-void remove_at_interrupt(const std::filesystem::path& name) {
-    at_interrupt(name, [name] {
-        ::unlink(name.c_str());
-        return std::string();
-    });
 }
 
 }  // namespace

@@ -96,4 +96,11 @@ Result<void> name_written(const std::filesystem::path& part, const std::filesyst
     return sync_name(name);
 }
 
+void remove_at_interrupt(const std::filesystem::path& name) {
+    at_interrupt(name, [name] {
+        ::unlink(name.c_str());
+        return std::string();
+    });
+}
+
 }  // namespace lucarne::file_io

@@ -19,6 +19,8 @@ Result<size_t> read_up_to(int fd, uint64_t offset, std::span<std::byte> out,
                           const std::filesystem::path& path);
 Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out,
                           const std::filesystem::path& path);
+/// Lets an interrupt remove an unfinished file (at_interrupt).
+void remove_at_interrupt(const std::filesystem::path& name);
 /// Waits until everything written is on the disk. `path` only names the file in errors.
 Result<void> sync(int fd, const std::filesystem::path& path);
 /// Waits until the name of `path`, new or replaced, is on the disk. Does nothing on a file system that cannot

@@ -24,9 +24,32 @@ Result<CacheWriter> CacheWriter::create(const std::filesystem::path& path, bool 
     LUCARNE_ASSIGN(ScratchFile entries, ScratchFile::create(temp_folder));
     CacheWriter writer(std::move(entries));
     writer.output_ = std::move(output);
-    // Room for the superblocks. They are zeros until finish(), so that an unfinished file is not a cache.
-    LUCARNE_TRY(writer.append(std::vector<std::byte>(format::kFirstPayload)));
+    LUCARNE_TRY(writer.start());
     return writer;
+}
+
+Result<CacheWriter> CacheWriter::create_shared(const std::filesystem::path& path, bool overwrite,
+                                               const std::filesystem::path& temp_folder) {
+    LUCARNE_ASSIGN(SharedOutput output, SharedOutput::create(path, overwrite));
+    LUCARNE_ASSIGN(ScratchFile entries, ScratchFile::create(temp_folder));
+    CacheWriter writer(std::move(entries));
+    writer.shared_ = std::move(output);
+    LUCARNE_TRY(writer.start());
+    return writer;
+}
+
+Result<CacheWriter> CacheWriter::stage(const std::filesystem::path& temp_folder) {
+    LUCARNE_ASSIGN(ScratchFile entries, ScratchFile::create(temp_folder));
+    LUCARNE_ASSIGN(ScratchFile payloads, ScratchFile::create(temp_folder));
+    CacheWriter writer(std::move(entries));
+    writer.stage_ = std::move(payloads);
+    return writer;
+}
+
+/// Leaves room for the superblocks. They are zeros until finish(), so that an unfinished file is not a cache.
+Result<void> CacheWriter::start() {
+    LUCARNE_TRY(append(std::vector<std::byte>(format::kFirstPayload)));
+    return {};
 }
 
 Result<CacheWriter> CacheWriter::update(UpdateFile file, const format::Superblock& before, size_t newest,
@@ -42,9 +65,13 @@ Result<CacheWriter> CacheWriter::update(UpdateFile file, const format::Superbloc
 }
 
 Result<void> CacheWriter::write_at(uint64_t offset, std::span<const std::byte> data) {
+    if (stage_) return stage_->write_at(offset, data);
+    if (shared_) return shared_->write_at(offset, data);
     return output_ ? output_->write_at(offset, data) : update_->write_at(offset, data);
 }
 Result<void> CacheWriter::read_at(uint64_t offset, std::span<std::byte> out) const {
+    if (stage_) return stage_->read_at(offset, out);
+    if (shared_) return shared_->read_at(offset, out);
     return output_ ? output_->read_at(offset, out) : update_->read_at(offset, out);
 }
 
@@ -69,6 +96,12 @@ Result<void> CacheWriter::flush_entries() {
     entries_written_ += buffer_.size();
     buffer_.clear();
     return {};
+}
+
+Result<std::vector<std::byte>> CacheWriter::entries(uint64_t first, uint64_t count) const {
+    std::vector<std::byte> bytes(count * kEntryBytes);
+    LUCARNE_TRY(entries_.read_at(first * kEntryBytes, bytes));
+    return bytes;
 }
 
 /// Distributes the entries to their levels' ranges at the end of the file. Returns the directory's checksum.
@@ -133,10 +166,10 @@ void CacheWriter::abandon() {
 /// that the new one refers to is on the disk.
 Result<void> CacheWriter::commit(format::Superblock block) {
     const auto bytes = format::encode(block);
-    if (output_) {
-        LUCARNE_TRY(output_->write_at(0, bytes));
-        LUCARNE_TRY(output_->write_at(format::kSuperblockBytes, bytes));
-        return output_->commit();
+    if (!update_) {
+        LUCARNE_TRY(write_at(0, bytes));
+        LUCARNE_TRY(write_at(format::kSuperblockBytes, bytes));
+        return output_ ? output_->commit() : shared_->commit();
     }
     LUCARNE_TRY(update_->sync());
     switching_ = true;

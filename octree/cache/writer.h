@@ -5,9 +5,11 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "io/files/file.h"
+#include "io/files/shared_output.h"
 #include "io/files/update_file.h"
 #include "octree/cache/format.h"
 
@@ -27,8 +29,23 @@ class CacheWriter {
     static Result<CacheWriter> update(UpdateFile file, const format::Superblock& before, size_t newest,
                                       const std::filesystem::path& temp_folder);
 
+    /// Starts a new cache to which other processes write as well (reserve).
+    static Result<CacheWriter> create_shared(const std::filesystem::path& path, bool overwrite,
+                                             const std::filesystem::path& temp_folder);
+    /// Keeps payloads and nodes in scratch files, from which they get into the cache of another writer. Its
+    /// offsets begin at 0.
+    static Result<CacheWriter> stage(const std::filesystem::path& temp_folder);
+
     /// Appends a payload and returns its offset.
     Result<uint64_t> append(std::span<const std::byte> payload);
+    /// Leaves room for payloads that another process writes. Returns its offset.
+    uint64_t reserve(uint64_t bytes) { return std::exchange(end_, end_ + bytes); }
+    /// Reads what was appended.
+    Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
+    /// Returns nodes [first, first + count) in the order of add(), as the directory stores them. Call
+    /// flush_entries() first. Thread-safe.
+    Result<std::vector<std::byte>> entries(uint64_t first, uint64_t count) const;
+    Result<void> flush_entries();
     Result<void> add(const format::Entry& entry);
     /// Takes a node's cube and its points in the new state's schema. Returns whether it wants more nodes.
     using NodeVisit = std::function<bool(const Cube& cube, const NodeData& data)>;
@@ -55,9 +72,8 @@ class CacheWriter {
  private:
     explicit CacheWriter(ScratchFile entries) : entries_(std::move(entries)) {}
     Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
-    Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
+    Result<void> start();
     Result<void> commit(format::Superblock block);
-    Result<void> flush_entries();
     /// Visits the entries in the order of add().
     Result<void> each_entry(const std::function<void(const format::Entry&)>& visit);
     /// Takes a node that was added, and its points, which may be changed. Returns whether it wants more
@@ -69,9 +85,11 @@ class CacheWriter {
     Result<std::vector<format::Entry>> coarsest(uint64_t most);
     Result<uint64_t> write_directory();
 
-    std::optional<OutputFile> output_;  ///< of a new cache...
-    std::optional<UpdateFile> update_;  ///< ...or of one that is updated
-    size_t next_block_ = 0;             ///< index of the superblock that an update writes
+    std::optional<OutputFile> output_;    ///< of a new cache...
+    std::optional<UpdateFile> update_;    ///< ...or of one that is updated
+    std::optional<SharedOutput> shared_;  ///< ...or of a new one that others write as well
+    std::optional<ScratchFile> stage_;    ///< ...or of what is only kept for another
+    size_t next_block_ = 0;               ///< index of the superblock that an update writes
     uint64_t generation_ = 1, begin_ = 0;
     bool switching_ = false;
     uint64_t end_ = 0;     ///< end of what was appended

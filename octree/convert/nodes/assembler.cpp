@@ -44,6 +44,7 @@ Result<void> Assembler::add(Subtree&& tree, const NodeKey* next) {
     while (stack_.back().node.key.level > 0) {
         const NodeKey parent = stack_.back().node.key.parent();
         if (next && is_ancestor(parent, *next)) return {};
+        if (before_ && is_ancestor(parent, *before_)) return {};
         size_t children = 1;
         while (children < stack_.size()) {
             const NodeKey& key = stack_[stack_.size() - children - 1].node.key;
@@ -52,13 +53,19 @@ Result<void> Assembler::add(Subtree&& tree, const NodeKey* next) {
         }
         LUCARNE_TRY(join(children));
     }
-    return finish_root();
+    return part_ ? Result<void>() : finish_root();
+}
+
+std::vector<Assembler::Loose> Assembler::loose() const {
+    std::vector<Loose> loose;
+    for (const Waiting& waiting : stack_) loose.push_back({waiting.node, waiting.payload_end, waiting.nodes});
+    return loose;
 }
 
 Result<void> Assembler::push(Pending node, std::span<const std::byte> sample) {
     LUCARNE_TRY(samples_.write_at(end_ * stride_, sample));
     const auto count = static_cast<uint32_t>(sample.size() / stride_);
-    stack_.push_back({node, end_, count});
+    stack_.push_back({node, end_, count, writer_.bytes(), writer_.nodes()});
     end_ += count;
     if (listener_) listener_->pending(node, sample, writer_);
     return {};
