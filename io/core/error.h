@@ -11,7 +11,7 @@ namespace lucarne {
 ///  - A broken invariant of its own code: `assert`, or std::logic_error where a release build must stop as
 ///    well.
 ///  - Bad input, a full disk, a missing device: a function returns a `Result` that carries an `Error`.
-///  - Only viewer/main.cpp prints an `Error` and turns it into an exit code.
+///  - Only viewer/program prints an `Error` and turns it into an exit code.
 /// The enumerators are the exit codes of `lucarne`.
 enum class ErrorKind { failed = 1, arguments = 2, input_rejected = 3 };
 

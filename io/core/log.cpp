@@ -8,6 +8,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "io/core/log_silence.h"
 #include "io/core/terminal.h"
 
 namespace lucarne::log {
@@ -57,6 +58,9 @@ void warn(std::string_view text) {
 }
 void set_quiet(bool quiet) {
     logger().set_level(quiet ? spdlog::level::warn : spdlog::level::info);
+}
+void set_silent(bool silent) {
+    logger().set_level(silent ? spdlog::level::off : spdlog::level::info);
 }
 
 Operation::Operation() : said_(std::make_shared<Said>()) {}

@@ -20,8 +20,10 @@
 #include "octree/convert/nodes/assembler.h"
 #include "octree/convert/nodes/build_listener.h"
 #include "octree/convert/nodes/in_order.h"
+#include "octree/convert/nodes/join_ranks.h"
 #include "octree/convert/scans/early_count.h"
 #include "octree/convert/scans/scan_stage.h"
+#include "octree/convert/together.h"
 #include "octree/holes/hole_survey.h"
 
 namespace lucarne::octree {
@@ -90,8 +92,8 @@ class Steps {
     Progress progress_;
 };
 
-Pass with_steps(const Pass& pass, Steps& steps, uint32_t stride) {
-    return [&pass, &steps, stride](const Visit& visit) {
+Pass with_steps(Pass pass, Steps& steps, uint32_t stride) {
+    return [pass = std::move(pass), &steps, stride](const Visit& visit) {
         return pass([&](std::span<const std::byte> records) -> Result<void> {
             LUCARNE_TRY(steps.add(records.size() / stride));
             return visit(records);
@@ -99,17 +101,24 @@ Pass with_steps(const Pass& pass, Steps& steps, uint32_t stride) {
     };
 }
 
-Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
-                               const MemoryPlan& memory, BuildListener* listener, bool stations,
-                               std::optional<CountGrid> counted) {
+Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, InputRange own,
+                               const ScanFacts& facts, const MemoryPlan& memory, const BuildOptions& options,
+                               bool stations, std::optional<CountGrid> counted) {
     LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", false));
     ChunkStore store(std::move(file), inputs.schema(), facts.root, stations);
     const ThreadLimit readers(memory.readers);
-    Steps steps(listener, "sorting into chunks", (counted ? 1 : 2) * facts.points);
-    const Pass points = pass_over_inputs(inputs, memory.batch_bytes);
-    const Pass pass = stations ? with_point_stations(points, inputs.schema(), facts.spans) : points;
-    LUCARNE_TRY(
-        store.fill(with_steps(pass, steps, store.schema().stride), facts.points, memory, std::move(counted)));
+    uint64_t own_points = 0;
+    for (size_t input = own.first; input < own.end; ++input) own_points += facts.inputs[input].points;
+    Steps steps(options.listener, "sorting into chunks", (counted ? 1 : 2) * own_points);
+    const Pass points = pass_over_inputs(inputs, own, memory.batch_bytes);
+    const Pass pass =
+        with_steps(stations ? with_point_stations(points, inputs.schema(), facts.spans) : points, steps,
+                   store.schema().stride);
+    if (options.ranks) {
+        LUCARNE_TRY(store.fill(pass, facts.points, memory, *options.ranks, std::move(counted)));
+    } else {
+        LUCARNE_TRY(store.fill(pass, facts.points, memory, std::move(counted)));
+    }
     return store;
 }
 Result<ChunkStore> kept_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
@@ -132,39 +141,69 @@ Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store
 
 /// Reads the inputs once, for bounds and counts. `counted` becomes the counts for the chunks, or stays empty
 /// if the headers do not state what is needed to make them.
-Result<ScanFacts> scan_and_count(const Unifier& inputs, const MemoryPlan& memory, BuildListener* listener,
-                                 std::optional<CountGrid>& counted) {
+Result<ScanFacts> scan_and_count(const Unifier& inputs, InputRange own, const MemoryPlan& memory,
+                                 const BuildOptions& options, std::optional<CountGrid>& counted) {
     const ThreadLimit readers(memory.readers);
-    EarlyCount early(inputs, memory.grid_bytes);
-    Steps steps(listener, "reading", inputs.declared_points());
+    uint64_t declared = 0;
+    for (size_t input = own.first; input < own.end; ++input)
+        declared += inputs.source(input).info().declared_points;
+    Steps steps(options.listener, "reading", declared);
     const auto seen = [&](std::span<const std::byte> records) -> Result<void> {
-        if (listener) listener->read(records);
+        if (options.ranks && options.ranks->stopped())
+            return failed("the build", "has failed on another rank");
+        if (options.listener) options.listener->read(records);
         return steps.add(records.size() / inputs.schema().stride);
     };
+    if (options.ranks) return scan_together(inputs, own, memory, *options.ranks, seen, counted);
+    EarlyCount early(inputs, memory.grid_bytes);
     LUCARNE_ASSIGN(auto facts, scan_inputs(inputs, memory.batch_bytes, 0, &early, seen));
     counted = early.take(facts);
     return facts;
 }
 
-/// Builds chunks in parallel and assembles them in order. At most `workers` are in memory. `keep`: a resumed
-/// build may need the chunks again, so their space on disk is not freed.
+/// Builds this process's chunks in parallel and assembles them in order. At most `workers` are in memory.
+/// `keep`: a resumed build may need the chunks again, so their space on disk is not freed.
 Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
-                          const MemoryPlan& memory, bool keep, Assembler& assembler, Steps& steps) {
+                          const MemoryPlan& memory, bool keep, Assembler& assembler, Steps& steps,
+                          const Ranks* ranks) {
     const auto chunks = store.chunks();
-    const auto build = [&](size_t chunk) { return build_subtree(loader, chunk, limits); };
-    const auto assemble = [&](size_t chunk, Subtree&& tree) -> Result<void> {
+    const ChunkRange own = store.own();
+    const auto build = [&](size_t i) { return build_subtree(loader, own.first + i, limits); };
+    const auto assemble = [&](size_t i, Subtree&& tree) -> Result<void> {
+        const size_t chunk = own.first + i;
+        if (ranks && ranks->stopped()) return failed("the build", "has failed on another rank");
         LUCARNE_TRY(steps.add(chunks[chunk].count));
         LUCARNE_TRY(
             assembler.add(std::move(tree), chunk + 1 < chunks.size() ? &chunks[chunk + 1].key : nullptr));
         if (!keep) store.discard(chunk);
         return {};
     };
-    return in_order(chunks.size(), memory.workers, build, assemble);
+    return in_order(own.end - own.first, memory.workers, build, assemble);
 }
 
-}  // namespace
+/// Does the same on several ranks: each builds its chunks into scratch files, from which the nodes get into
+/// the cache. Returns the CPU time of compression.
+Result<double> build_together(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
+                              const MemoryPlan& memory, const std::filesystem::path& folder,
+                              SharedCache& cache, Steps& steps, Ranks& ranks) {
+    LUCARNE_ASSIGN(CacheWriter staged, CacheWriter::stage(folder));
+    LUCARNE_ASSIGN(Assembler own, Assembler::create(staged, loader, limits, folder));
+    const size_t first = store.own().first;
+    own.only_a_part(first > 0 ? &store.chunks()[first - 1].key : nullptr);
+    LUCARNE_TRY(build_chunks(store, loader, limits, memory, false, own, steps, &ranks));
+    return join_ranks(ranks, {loader, limits, staged, own}, cache.writer ? &*cache.writer : nullptr,
+                      *cache.output, folder);
+}
 
-Result<BuildReport> build_cache(const BuildOptions& options) {
+uint64_t points_of(const ChunkStore& store) {
+    uint64_t points = 0;
+    for (size_t chunk = store.own().first; chunk < store.own().end; ++chunk)
+        points += store.chunks()[chunk].count;
+    return points;
+}
+
+/// Builds the cache; of several ranks each does its part. `shared` becomes the file that they write.
+Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache>& shared) {
     LUCARNE_TRY(check_output(options.output, options.overwrite));
     const unsigned threads =
         options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
@@ -186,12 +225,18 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, need));
 
     BuildReport report;
+    Ranks* const ranks = options.ranks;
+    if (ranks) {
+        LUCARNE_TRY(check_ranks(*ranks, options));
+        LUCARNE_ASSIGN(shared, SharedCache::create(*ranks, options, folder));
+    }
+    const InputRange own = ranks ? inputs_of_rank(inputs, *ranks) : InputRange{0, inputs.inputs()};
     const std::string identity = options.resume == Resume::never ? "" : build_identity(options);
     LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
     std::optional<CountGrid> counted;
     LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
                        return resumable(work, "scan", ScanFacts::restore, [&] {
-                           return scan_and_count(inputs, memory, options.listener, counted);
+                           return scan_and_count(inputs, own, memory, options, counted);
                        });
                    }));
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs, facts.without_normal == 0));
@@ -216,20 +261,22 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
                 work, "chunk",
                 [&](const auto& record) { return kept_chunks(work, inputs, facts, stations, record); },
                 [&] {
-                    return fill_chunks(work, inputs, facts, memory, options.listener, stations,
+                    return fill_chunks(work, inputs, own, facts, memory, options, stations,
                                        std::move(counted));
                 });
         }));
     std::optional<SurfaceStore> surface;
     if (normals) {
-        Steps steps(options.listener, "normals", facts.points);
+        Steps steps(options.listener, "normals", points_of(store));
         const SurfaceStore::Settings settings{*normals,
                                               options.neighbours,
                                               options.neighbour_search,
                                               threads,
                                               options.memory,
                                               facts.stations,
-                                              [&](uint64_t points) { return steps.add(points); }};
+                                              [&](uint64_t points) { return steps.add(points); },
+                                              ranks,
+                                              folder};
         LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
                            return resumable(
                                work, "normals",
@@ -238,19 +285,34 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
                        }));
     }
     const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false));
-    LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(options.output, options.overwrite, folder));
+    std::optional<CacheWriter> alone;
+    if (!ranks) {
+        LUCARNE_ASSIGN(alone, CacheWriter::create(options.output, options.overwrite, folder));
+    }
     double encoding = 0;
     LUCARNE_TRY(timed(report, "build", [&]() -> Result<void> {
-        Steps steps(options.listener, "building", facts.points);
+        Steps steps(options.listener, "building", points_of(store));
+        if (ranks) {
+            LUCARNE_ASSIGN(encoding,
+                           build_together(store, loader, limits, memory, folder, *shared, steps, *ranks));
+            return {};
+        }
         if (options.listener) options.listener->building(loader.schema());
         LUCARNE_ASSIGN(Assembler assembler,
-                       Assembler::create(writer, loader, limits, folder, options.listener));
-        auto built = build_chunks(store, loader, limits, memory, work.resumable(), assembler, steps);
+                       Assembler::create(*alone, loader, limits, folder, options.listener));
+        auto built = build_chunks(store, loader, limits, memory, work.resumable(), assembler, steps, nullptr);
         encoding = assembler.encode_seconds();
         return built;
     }));
     report.stages.back().cpu_seconds -= encoding;
     report.stages.push_back({"encode", 0, encoding});
+    if (ranks) {
+        LUCARNE_TRY(sum_cpu(*ranks, report.stages));
+        report.exchanged = ranks->sent();
+        LUCARNE_TRY(ranks->sum({&report.exchanged, 1}));
+        if (ranks->rank() > 0) return report;  // rank 0 does what is left
+    }
+    CacheWriter& writer = ranks ? *shared->writer : *alone;
     SourceHeader header = bare;
     header.schema = loader.schema();
     LUCARNE_ASSIGN(header.station_colours,
@@ -270,6 +332,16 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     report.chunks = store.chunks().size();
     report.nodes = writer.nodes();
     report.bytes = writer.bytes();
+    return report;
+}
+
+}  // namespace
+
+Result<BuildReport> build_cache(const BuildOptions& options) {
+    std::optional<SharedCache> shared;  // until all ranks are done, because any of them may have to remove it
+    auto report = build(options, shared);
+    if (!options.ranks) return report;
+    LUCARNE_TRY(options.ranks->conclude(report ? Result<void>() : tl::make_unexpected(report.error())));
     return report;
 }
 

@@ -20,6 +20,7 @@ enum class NormalsMode {
 };
 
 class BuildListener;
+class Ranks;
 
 struct BuildOptions {
     std::vector<const io::PointSource*> inputs;
@@ -33,7 +34,10 @@ struct BuildOptions {
     std::string read_options;  ///< how the inputs were opened (io::options_text); stored in the cache
     uint32_t neighbours = 16;  ///< number of neighbours for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
-    bool fill = true;                   ///< look for holes, and store surfels that fill them (octree/holes)
+    bool fill = true;  ///< look for holes, and store surfels that fill them (octree/holes)
+    /// The processes that build the cache together; null: this one alone. All have the same options. They do
+    /// not resume.
+    Ranks* ranks = nullptr;
     BuildListener* listener = nullptr;  ///< told about the progress (build_listener.h); outlives the build
 };
 
@@ -51,13 +55,16 @@ struct BuildReport {
     uint64_t nodes = 0, chunks = 0, bytes = 0;
     uint64_t estimated_stations = 0;  ///< of inputs that state none
     uint64_t filled = 0;              ///< synthetic surfels in holes
-    std::vector<StageTime> stages;
+    std::vector<StageTime> stages;    ///< CPU times of all ranks, wall times of this one
+    uint64_t exchanged = 0;           ///< bytes that ranks sent to others
 };
 
 /// Builds a cache from scans. Scans them, sorts the points into chunks, estimates normals, then builds chunk
 /// by chunk while the levels above are assembled. The file is the same for any number of threads and any
 /// memory cap. Errors: unreadable inputs, no points, an output that exists or cannot be written, a full disk.
 /// A failed build leaves nothing behind, except what `resume` asks for. A resumed build gives the same bytes.
+/// So does one of several ranks, which all return the error of one of them. Their report is complete at rank
+/// 0.
 Result<BuildReport> build_cache(const BuildOptions& options);
 
 }  // namespace lucarne::octree

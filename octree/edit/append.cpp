@@ -64,7 +64,8 @@ Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_
         const auto* edge = schema.find(io::names::edge_line);
         const auto* scan = schema.find(io::names::scan);
         std::vector<std::byte> records;
-        return pass_over_inputs(inputs, batch_bytes)([&](std::span<const std::byte> batch) -> Result<void> {
+        return pass_over_inputs(inputs, {0, inputs.inputs()},
+                                batch_bytes)([&](std::span<const std::byte> batch) -> Result<void> {
             map.convert(batch.data(), batch.size() / inputs.schema().stride, records);
             for (size_t at = 0; at < records.size(); at += schema.stride) {
                 std::byte* record = &records[at];

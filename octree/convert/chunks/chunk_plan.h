@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "io/core/error.h"
@@ -55,6 +56,7 @@ class CountGrid {
     CountGrid(const NodeKey& cube, uint64_t points, uint64_t bytes);
 
     void count(const Place& place, uint64_t points = 1) { counts_[cell(place)] += points; }
+    std::span<uint64_t> counts() { return counts_; }  ///< by cell; until plan()
     /// Joins cells until the grid is as fine as one made for this number of points. Returns false if it is
     /// too coarse for that.
     bool coarsen_for(uint64_t points, uint64_t bytes);
@@ -63,6 +65,13 @@ class CountGrid {
     std::vector<Chunk> plan(uint64_t limit, size_t most);
     /// The index of the chunk that contains a place. Call plan() first.
     uint32_t chunk_of(const Place& place) const { return chunk_of_cell_[cell(place)]; }
+    /// Adds up counts by cell to counts by chunk. Call plan() first.
+    std::vector<uint64_t> by_chunk(std::span<const uint64_t> cells, size_t chunks) const {
+        std::vector<uint64_t> sums(chunks);
+        for (size_t i = 0; i < cells.size(); ++i)
+            if (cells[i]) sums[chunk_of_cell_[i]] += cells[i];
+        return sums;
+    }
 
  private:
     size_t cell(const Place& p) const {

@@ -5,16 +5,11 @@
 
 #include <xxhash.h>
 
+#include "octree/convert/chunks/inputs_changed.h"
 #include "octree/convert/chunks/record_bytes.h"
 
 namespace lucarne::octree {
 namespace {
-
-/// Counting and distributing read the input twice. A file that is written to meanwhile must not corrupt the
-/// chunks.
-auto changed() {
-    return rejected("inputs", "changed while they were read", "convert again when they are complete");
-}
 
 constexpr uint64_t kMinBuffer = 8 << 10, kMaxBuffer = 256 << 10;
 
@@ -47,7 +42,7 @@ class Dealer {
     Result<void> finish() {
         for (auto& lane : lanes_) {
             LUCARNE_TRY(flush(lane));
-            if (lane.offset != lane.end) return changed();
+            if (lane.offset != lane.end) return inputs_changed();
         }
         return {};
     }
@@ -59,7 +54,7 @@ class Dealer {
         std::vector<std::byte> waiting;
     };
     Result<void> flush(Lane& lane) {
-        if (lane.waiting.size() > lane.end - lane.offset) return changed();
+        if (lane.waiting.size() > lane.end - lane.offset) return inputs_changed();
         LUCARNE_TRY(file_.write_at(lane.offset, lane.waiting));
         lane.chunk.sum = chained_sum(lane.chunk.sum, lane.waiting);
         lane.offset += lane.waiting.size();
@@ -178,16 +173,19 @@ Result<CountGrid> ChunkStore::count(const Pass& pass, const NodeKey& cube, uint6
     return grid;
 }
 
+/// Returns how many chunks have a buffer at a time.
+size_t ChunkStore::most_chunks(const MemoryPlan& memory, uint32_t stride) {
+    return std::max<uint64_t>(64, memory.buffer_bytes / std::max<uint64_t>(kMinBuffer, stride));
+}
+
 /// Distributes the points that `grid` counted: they become chunks at the end of the scratch file.
 Result<std::vector<Chunk>> ChunkStore::distribute(const Pass& pass, CountGrid grid, uint64_t points,
                                                   const MemoryPlan& memory) {
     const uint32_t stride = schema_.stride;
-    std::vector<Chunk> chunks =
-        grid.plan(memory.chunk_points,
-                  std::max<uint64_t>(64, memory.buffer_bytes / std::max<uint64_t>(kMinBuffer, stride)));
+    std::vector<Chunk> chunks = grid.plan(memory.chunk_points, most_chunks(memory, stride));
     uint64_t counted = 0;
     for (const auto& chunk : chunks) counted += chunk.count;
-    if (counted != points) return changed();
+    if (counted != points) return inputs_changed();
     Dealer dealer(file_, chunks, end_, stride, memory.buffer_bytes);
     const auto deal = [&](std::span<const std::byte> records) -> Result<void> {
         for (size_t at = 0; at < records.size(); at += stride)
@@ -246,7 +244,7 @@ Pass ChunkStore::pass_over(const Chunk& chunk, const MemoryPlan& memory) {
 }
 
 Result<std::vector<std::byte>> ChunkStore::load(size_t chunk, uint64_t first, uint64_t count) const {
-    assert(first + count <= chunks_[chunk].count);
+    assert(own().contains(chunk) && first + count <= chunks_[chunk].count);
     std::vector<std::byte> records(count * schema_.stride);
     LUCARNE_TRY(file_.read_at((chunks_[chunk].first + first) * schema_.stride, records));
     return records;

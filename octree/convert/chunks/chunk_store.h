@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "io/files/file.h"
+#include "octree/cluster/ranks.h"
 #include "octree/convert/chunks/chunk_plan.h"
+#include "octree/normals/normals.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {
@@ -46,6 +49,20 @@ class ChunkStore {
     /// without points are left out.
     Result<void> fill(const Pass& pass, std::span<const NodeKey> cubes, bool split, const MemoryPlan& memory);
 
+    /// Sorts the points of all ranks into chunks, each of which goes to one rank: the same chunks as one
+    /// process makes of all inputs. A meeting of the ranks. `own`: the points that this rank reads; the ranks
+    /// read consecutive parts of the inputs. `points`: of all ranks. `counted`: as above, of this rank's
+    /// points; all ranks have it or none.
+    Result<void> fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
+                      std::optional<CountGrid> counted);
+    /// The chunks in this process; of the others only their cubes and counts are known.
+    ChunkRange own() const { return own_ ? *own_ : ChunkRange{0, chunks_.size()}; }
+    /// The rank that has a chunk.
+    size_t owner(size_t chunk) const {
+        return static_cast<size_t>(std::ranges::upper_bound(first_of_rank_, chunk) - first_of_rank_.begin()) -
+               1;
+    }
+
     /// In Morton order. A chunk has more than MemoryPlan::chunk_points points only where the Morton code is
     /// exhausted.
     std::span<const Chunk> chunks() const { return chunks_; }
@@ -70,6 +87,8 @@ class ChunkStore {
     Result<std::vector<Chunk>> distribute(const Pass& pass, CountGrid grid, uint64_t points,
                                           const MemoryPlan& memory);
     Result<void> refine(std::vector<Chunk> coarse, const MemoryPlan& memory);
+    Result<void> learn_others(Ranks& ranks);
+    static size_t most_chunks(const MemoryPlan& memory, uint32_t stride);
     void stack(const Chunk& chunk, uint64_t limit);
     Pass pass_over(const Chunk& chunk, const MemoryPlan& memory);
 
@@ -77,8 +96,10 @@ class ChunkStore {
     io::Schema points_schema_, schema_;
     Cube root_;
     std::vector<Chunk> chunks_;
-    std::vector<Chunk> dealt_;  ///< the chunks as written, before those of one place were divided
-    uint64_t end_ = 0;          ///< points written so far, including those of chunks that were split again
+    std::vector<Chunk> dealt_;           ///< the chunks as written, before those of one place were divided
+    std::optional<ChunkRange> own_;      ///< empty: all
+    std::vector<size_t> first_of_rank_;  ///< the first chunk of each rank, and the end
+    uint64_t end_ = 0;  ///< points written so far, including those of chunks that were split again
 };
 
 }  // namespace lucarne::octree

@@ -7,87 +7,24 @@
 #include <fmt/format.h>
 
 #include "octree/cache/format.h"
+#include "octree/convert/chunks/chunk_points.h"
 #include "octree/convert/chunks/record_bytes.h"
-#include "octree/tree/station_ids.h"
 
 namespace lucarne::octree {
 namespace {
 
-constexpr uint64_t kPieceBytes = uint64_t{1} << 18;  ///< of records read at a time
-constexpr float kAreaBins = 4;                       ///< bins per octave
+constexpr float kAreaBins = 4;  ///< bins per octave
 /// Largest area of a point without a plane, as a share of the median area. A few points in the air together
 /// have no plane, and their estimated area is that of the empty space around them. They must not be drawn
 /// larger than usual surfels.
 constexpr float kMostStray = 0.5f;
-
-/// Shows the chunks and stations of a build to the estimator.
-class Access final : public ChunkAccess {
- public:
-    Access(const ChunkStore& store, const std::vector<io::ScanInfo>& scans,
-           std::span<const EstimatedStation> estimated)
-        : store_(store), ids_(scans, store.schema(), estimated) {}
-
-    const std::vector<glm::dvec3>& all_stations() const { return ids_.stations(); }
-
-    size_t chunk_count() const override { return store_.chunks().size(); }
-    /// A chunk whose points are all at one place appears empty: it has no visible plane, and its points would
-    /// be neighbours of everything around.
-    uint64_t point_count(size_t chunk) const override {
-        const Chunk& found = store_.chunks()[chunk];
-        return found.key.level > kMaxLevel ? 0 : found.count;
-    }
-    Box bounds(size_t chunk) const override {
-        const Cube cube = store_.root().of(store_.chunks()[chunk].key);
-        return {cube.min, cube.min + glm::dvec3(cube.size)};
-    }
-
-    Result<std::vector<glm::dvec3>> positions(size_t chunk) const override {
-        std::vector<glm::dvec3> positions;
-        positions.reserve(point_count(chunk));
-        LUCARNE_TRY(for_each_record(chunk, [&](const std::byte* record) {
-            positions.push_back(io::position_of(store_.schema(), record));
-        }));
-        return positions;
-    }
-
-    Result<std::vector<int32_t>> stations(size_t chunk) const override {
-        if (all_stations().empty()) return std::vector<int32_t>(point_count(chunk), -1);
-        std::vector<int32_t> result;
-        result.reserve(point_count(chunk));
-        LUCARNE_TRY(
-            for_each_record(chunk, [&](const std::byte* record) { result.push_back(station_of(record)); }));
-        return result;
-    }
-
- private:
-    int32_t station_of(const std::byte* record) const {
-        if (const int32_t station = ids_.of(record); station >= 0) return station;
-        const int32_t estimated = store_.estimated_station(record);
-        return estimated < 0 ? -1 : static_cast<int32_t>(ids_.stated()) + estimated;
-    }
-
-    /// Reads in pieces, because records may be many times as wide as the fields that are used.
-    template <typename Use>
-    Result<void> for_each_record(size_t chunk, const Use& use) const {
-        const size_t stride = store_.schema().stride;
-        const uint64_t count = point_count(chunk), piece = std::max<uint64_t>(1, kPieceBytes / stride);
-        for (uint64_t first = 0; first < count; first += piece) {
-            LUCARNE_ASSIGN(const auto records, store_.load(chunk, first, std::min(piece, count - first)));
-            for (size_t at = 0; at < records.size(); at += stride) use(&records[at]);
-        }
-        return {};
-    }
-
-    const ChunkStore& store_;
-    StationIds ids_;
-};
 
 }  // namespace
 
 Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std::vector<io::ScanInfo>& scans,
                                             ScratchFile file, const Settings& settings) {
     SurfaceStore store(std::move(file), chunks);
-    const Access access(chunks, scans, settings.estimated_stations);
+    const ChunkPoints access(chunks, scans, settings.estimated_stations, settings.ranks);
     NormalOptions options;
     options.neighbours = settings.neighbours;
     options.search = settings.search;
@@ -103,7 +40,13 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
         LUCARNE_TRY(store.keep(chunk, count, found));
         return settings.step ? settings.step(count) : Result<void>();
     };
-    LUCARNE_ASSIGN(store.signs_, estimate_normals(access, options, keep));
+    if (settings.ranks) {
+        const Serving answers(*settings.ranks,
+                              [&](std::span<const std::byte> question) { return access.answer(question); });
+        LUCARNE_TRY(store.estimate_together(chunks, access, options, keep, settings));
+    } else {
+        LUCARNE_ASSIGN(store.signs_, estimate_normals(access, options, keep));
+    }
     if (settings.normals) store.limit_strays();
     return store;
 }

@@ -28,6 +28,9 @@ class SurfaceStore {
         std::vector<EstimatedStation> estimated_stations{};
         /// Called with numbers of finished points; its error ends the stage.
         std::function<Result<void>(uint64_t points)> step;
+        /// The ranks that have the chunks; null for this process alone. The estimate is then a meeting.
+        Ranks* ranks = nullptr;
+        std::filesystem::path folder{};  ///< for a further scratch file of several ranks
     };
 
     /// Runs the estimator over all chunks. `scans` has the stations, one entry an input.
@@ -48,7 +51,10 @@ class SurfaceStore {
  private:
     SurfaceStore(ScratchFile file, const ChunkStore& chunks)
         : file_(std::move(file)), sums_(chunks.chunks().size()) {
-        for (const auto& chunk : chunks.chunks()) first_.push_back(end_), end_ += chunk.count;
+        for (size_t i = 0; i < chunks.chunks().size(); ++i) {
+            first_.push_back(end_);
+            if (chunks.own().contains(i)) end_ += chunks.chunks()[i].count;
+        }
     }
     uint64_t count(size_t chunk) const {
         return (chunk + 1 < first_.size() ? first_[chunk + 1] : end_) - first_[chunk];
@@ -56,9 +62,15 @@ class SurfaceStore {
     Result<std::vector<Point>> read(size_t chunk, uint64_t first, uint64_t count) const;
     Result<void> keep(size_t chunk, uint64_t count, const ChunkNormals& found);
     void limit_strays();
+    Result<void> estimate_together(const ChunkStore& chunks, const ChunkAccess& access,
+                                   const NormalOptions& options,
+                                   const std::function<Result<void>(size_t, ChunkNormals&&)>& keep,
+                                   const Settings& settings);
+    Result<void> sum_areas(Ranks& ranks);
 
     ScratchFile file_;
-    std::vector<uint64_t> first_;  ///< index of each chunk's first point
+    std::vector<uint64_t>
+        first_;  ///< index of each chunk's first point; chunks of other ranks have none here
     uint64_t end_ = 0;
     std::vector<uint64_t> sums_;  ///< checksums of the chunks' parts of the file
     OrientationSigns signs_;

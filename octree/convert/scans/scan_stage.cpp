@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <glm/common.hpp>
@@ -50,9 +51,10 @@ std::string get_text(ByteReader& reader) {
 }
 
 /// Adds the stations that an input's points show.
-void add_stations(ScanFacts& facts, size_t input, const io::ScanInfo& info, const ScanRuns& runs) {
+void add_stations(ScanFacts& facts, size_t input, const io::ScanInfo& info, const ScanRuns& runs,
+                  size_t most) {
     auto found = find_stations(runs, info.metres_per_unit);
-    found.resize(std::min(found.size(), kMostEstimatedStations - facts.stations.size()));
+    found.resize(std::min(found.size(), most - facts.stations.size()));
     auto spans = station_spans(runs, found, info.metres_per_unit);
     const bool all = found.size() == 1 && saw_all(runs, spans);
     const auto scan = static_cast<uint32_t>(input), before = static_cast<uint32_t>(facts.stations.size());
@@ -138,21 +140,36 @@ Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
     return facts;
 }
 
-Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes) {
-    return [&inputs, batch_bytes](const Visit& visit) -> Result<void> {
-        for (size_t input = 0; input < inputs.inputs(); ++input)
+void ScanFacts::join(ScanFacts later) {
+    points += later.points;
+    dropped += later.dropped;
+    without_normal += later.without_normal;
+    min = glm::min(min, later.min);
+    max = glm::max(max, later.max);
+    std::ranges::move(later.inputs, std::back_inserter(inputs));
+    const auto before = static_cast<uint32_t>(stations.size());
+    stations.insert(stations.end(), later.stations.begin(), later.stations.end());
+    for (StationSpan& span : later.spans) {
+        span.station += before;
+        spans.push_back(span);
+    }
+}
+
+Pass pass_over_inputs(const Unifier& inputs, InputRange range, uint64_t batch_bytes) {
+    return [&inputs, range, batch_bytes](const Visit& visit) -> Result<void> {
+        for (size_t input = range.first; input < range.end; ++input)
             LUCARNE_TRY(read_input(inputs, input, batch_bytes, visit));
         return {};
     };
 }
 
-Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first, EarlyCount* early,
-                              const Visit& seen_by) {
+Result<ScanFacts> scan_range(const Unifier& inputs, InputRange range, uint64_t batch_bytes,
+                             size_t most_stations, EarlyCount* early, const Visit& seen_by) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ScanFacts facts{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
     const auto& schema = inputs.schema();
     const PointNormals normals(schema);
-    for (size_t input = first; input < inputs.inputs(); ++input) {
+    for (size_t input = range.first; input < range.end; ++input) {
         io::Contents seen{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
         io::ColorDepth depth(schema);
         const io::ScanInfo& info = inputs.source(input).info();
@@ -173,8 +190,7 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
                 if (early) early->add(schema, records, seen.min, seen.max);
                 return seen_by ? seen_by(records) : Result<void>();
             }));
-        for (const auto& loss : left.losses) log::warn("{}: {}", info.path, counted(loss.count, loss.what));
-        if (search) add_stations(facts, input, info, runs);
+        if (search) add_stations(facts, input, info, runs, most_stations);
         seen.color_bits = depth.bits();
         facts.min = glm::min(facts.min, seen.min);
         facts.max = glm::max(facts.max, seen.max);
@@ -183,11 +199,25 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
         seen.losses = std::move(left.losses);
         facts.inputs.push_back(std::move(seen));
     }
+    return facts;
+}
+
+Result<void> complete_scan(const Unifier& inputs, size_t first, ScanFacts& facts) {
+    for (size_t i = 0; i < facts.inputs.size(); ++i)
+        for (const auto& loss : facts.inputs[i].losses)
+            log::warn("{}: {}", inputs.source(first + i).info().path, counted(loss.count, loss.what));
     if (facts.points == 0) return rejected(inputs.source(first).info().path, "has no points");
-    for (size_t input = first; input < inputs.inputs(); ++input)
-        if (facts.inputs[input - first].points == 0)
-            log::warn("{}: has no points", inputs.source(input).info().path);
+    for (size_t i = 0; i < facts.inputs.size(); ++i)
+        if (facts.inputs[i].points == 0) log::warn("{}: has no points", inputs.source(first + i).info().path);
     LUCARNE_ASSIGN(facts.root, root_cube(facts.min, facts.max));
+    return {};
+}
+
+Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first, EarlyCount* early,
+                              const Visit& seen_by) {
+    LUCARNE_ASSIGN(ScanFacts facts, scan_range(inputs, {first, inputs.inputs()}, batch_bytes,
+                                               kMostEstimatedStations, early, seen_by));
+    LUCARNE_TRY(complete_scan(inputs, first, facts));
     return facts;
 }
 

@@ -21,6 +21,8 @@ struct ScanFacts {
     /// Which parts of the inputs they saw; sorted. Inputs of which one station saw all have none here.
     std::vector<StationSpan> spans;
 
+    /// Adds what was found in later inputs.
+    void join(ScanFacts later);
     std::vector<std::byte> save() const;
     static Result<ScanFacts> restore(std::span<const std::byte> record);
 };
@@ -28,14 +30,24 @@ struct ScanFacts {
 /// Returns the smallest cube at `min` that contains a box. Errors: coordinates too far apart for any cube.
 Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max);
 
-/// Returns a pass over the points of all inputs, in the unified schema, input after input.
-Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes);
+/// Some of the inputs, [first, end).
+struct InputRange {
+    size_t first = 0, end = 0;
+};
+
+/// Returns a pass over the points of some inputs, in the unified schema, input after input.
+Pass pass_over_inputs(const Unifier& inputs, InputRange range, uint64_t batch_bytes);
 
 class EarlyCount;
 
-/// Reads the inputs from `first` on and logs what each lost; the inputs before it only contribute their
-/// schemas. Errors: unreadable inputs, no points at all, coordinates too far apart for any cube.
-/// `early` and `seen_by` get all points as well.
+/// Reads some inputs. `early` and `seen_by` get all points as well. At most `most_stations` are estimated.
+/// Bounds and root are those of no points if there are none. Errors: unreadable inputs.
+Result<ScanFacts> scan_range(const Unifier& inputs, InputRange range, uint64_t batch_bytes,
+                             size_t most_stations, EarlyCount* early, const Visit& seen_by);
+/// Completes the facts of the inputs from `first` on: finds the root cube and logs what each input lost.
+/// Errors: no points at all, coordinates too far apart for any cube.
+Result<void> complete_scan(const Unifier& inputs, size_t first, ScanFacts& facts);
+/// Does both, for the inputs from `first` on; the inputs before it only contribute their schemas.
 Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first = 0,
                               EarlyCount* early = nullptr, const Visit& seen_by = {});
 

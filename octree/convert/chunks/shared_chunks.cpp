@@ -1,0 +1,210 @@
+// Sorting the points of several ranks into chunks.
+#include <cassert>
+#include <cstring>
+#include <numeric>
+
+#include "octree/convert/chunks/chunk_store.h"
+#include "octree/convert/chunks/inputs_changed.h"
+
+namespace lucarne::octree {
+namespace {
+
+using Bytes = Ranks::Bytes;
+
+constexpr uint64_t kParcelShare = 4;  ///< the parcels of a round have this part of the buffers' memory
+constexpr uint64_t kLeastParcel = 64 << 10;
+
+template <class T>
+Bytes as_parcel(std::span<const T> values) {
+    const auto bytes = std::as_bytes(values);
+    return {bytes.begin(), bytes.end()};
+}
+template <class T>
+std::vector<T> from_parcel(const Bytes& parcel) {
+    std::vector<T> values(parcel.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), parcel.data(), values.size() * sizeof(T));
+    return values;
+}
+
+/// Where the next record of a sender goes in a chunk, and where its records must end.
+struct Lane {
+    uint64_t next = 0, end = 0;
+};
+
+/// Sends the records of this rank to the owners of their chunks, in rounds that all ranks make together, and
+/// writes those that arrive. In a chunk, the records of a rank come after those of lower ranks, in the order
+/// in which they were read.
+class Delivery {
+ public:
+    using Place = std::function<uint32_t(const std::byte* record)>;
+    /// `lanes`: of each sender, of each chunk of this rank. `chunk_of` returns the chunk of a record.
+    Delivery(Ranks& ranks, ScratchFile& file, uint32_t stride, std::vector<size_t> first_of_rank,
+             std::vector<std::vector<Lane>> lanes, Place chunk_of, uint64_t bytes)
+        : ranks_(ranks),
+          file_(file),
+          stride_(stride),
+          first_(std::move(first_of_rank)),
+          lanes_(std::move(lanes)),
+          chunk_of_(std::move(chunk_of)),
+          most_(std::max(kLeastParcel, bytes / kParcelShare / ranks.count())) {
+        for (size_t rank = 0; rank < ranks.count(); ++rank)
+            rank_of_.resize(first_[rank + 1], static_cast<uint32_t>(rank));
+        start_round();
+    }
+
+    Result<void> take(std::span<const std::byte> records) {
+        for (size_t at = 0; at < records.size(); at += stride_) {
+            const uint32_t chunk = chunk_of_(&records[at]);
+            Bytes& parcel = parcels_[rank_of_[chunk]];
+            parcel.insert(parcel.end(), &records[at], &records[at] + stride_);
+            if (parcel.size() + stride_ > most_) LUCARNE_TRY(round(false));
+        }
+        return {};
+    }
+    Result<void> finish() {
+        do LUCARNE_TRY(round(true));
+        while (!all_done_);
+        for (const auto& sender : lanes_)
+            for (const Lane& lane : sender)
+                if (lane.next != lane.end) return inputs_changed();
+        return {};
+    }
+
+ private:
+    void start_round() {
+        parcels_.resize(ranks_.count());
+        for (Bytes& parcel : parcels_) parcel.assign(1, std::byte{0});
+    }
+    /// A parcel begins with a byte that tells whether it is the sender's last one.
+    Result<void> round(bool last) {
+        for (Bytes& parcel : parcels_) parcel[0] = std::byte{last};
+        LUCARNE_ASSIGN(const auto received, ranks_.exchange(std::move(parcels_)));
+        all_done_ = true;
+        for (size_t sender = 0; sender < received.size(); ++sender) {
+            all_done_ = all_done_ && received[sender][0] == std::byte{1};
+            LUCARNE_TRY(store(sender, std::span(received[sender]).subspan(1)));
+        }
+        start_round();
+        return {};
+    }
+    /// Writes the records of one sender, those of a chunk in one piece.
+    Result<void> store(size_t sender, std::span<const std::byte> records) {
+        const size_t own = first_[ranks_.rank()], count = records.size() / stride_;
+        if (count == 0) return {};
+        auto& lanes = lanes_[sender];
+        chunks_.resize(count);
+        starts_.assign(lanes.size() + 1, 0);
+        for (size_t i = 0; i < count; ++i) {
+            chunks_[i] = chunk_of_(&records[i * stride_]) - static_cast<uint32_t>(own);
+            assert(chunks_[i] < lanes.size());
+            ++starts_[chunks_[i] + 1];
+        }
+        std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+        sorted_.resize(records.size());
+        for (size_t i = 0; i < count; ++i)
+            std::memcpy(&sorted_[starts_[chunks_[i]]++ * stride_], &records[i * stride_], stride_);
+        for (size_t chunk = 0, begin = 0; chunk < lanes.size(); begin = starts_[chunk++]) {
+            const uint64_t arrived = starts_[chunk] - begin;
+            if (arrived == 0) continue;
+            if (arrived > lanes[chunk].end - lanes[chunk].next) return inputs_changed();
+            LUCARNE_TRY(file_.write_at(lanes[chunk].next * stride_,
+                                       std::span(sorted_).subspan(begin * stride_, arrived * stride_)));
+            lanes[chunk].next += arrived;
+        }
+        return {};
+    }
+
+    Ranks& ranks_;
+    ScratchFile& file_;
+    uint32_t stride_;
+    std::vector<size_t> first_;
+    std::vector<std::vector<Lane>> lanes_;
+    Place chunk_of_;
+    uint64_t most_;                  ///< bytes of a parcel
+    std::vector<uint32_t> rank_of_;  ///< by chunk
+    std::vector<Bytes> parcels_;
+    bool all_done_ = false;
+    std::vector<uint32_t> chunks_;
+    std::vector<size_t> starts_;
+    Bytes sorted_;
+};
+
+/// Tells each rank how many records of its chunks this rank has. Returns where those of each rank go, of each
+/// chunk of this rank.
+Result<std::vector<std::vector<Lane>>> plan_lanes(Ranks& ranks, std::span<const uint64_t> counts,
+                                                  const std::vector<size_t>& first_of_rank) {
+    std::vector<Bytes> parcels;
+    for (size_t rank = 0; rank < ranks.count(); ++rank)
+        parcels.push_back(
+            as_parcel(counts.subspan(first_of_rank[rank], first_of_rank[rank + 1] - first_of_rank[rank])));
+    LUCARNE_ASSIGN(const auto received, ranks.exchange(std::move(parcels)));
+    std::vector<std::vector<Lane>> lanes;
+    for (const Bytes& parcel : received) {
+        auto& of_sender = lanes.emplace_back();
+        for (const uint64_t count : from_parcel<uint64_t>(parcel)) of_sender.push_back({0, count});
+    }
+    uint64_t end = 0;
+    for (size_t chunk = 0; chunk < lanes[0].size(); ++chunk)
+        for (auto& sender : lanes) {
+            sender[chunk].next = end;
+            end = sender[chunk].end += end;
+        }
+    return lanes;
+}
+
+}  // namespace
+
+Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
+                              std::optional<CountGrid> counted) {
+    if (!counted) {
+        LUCARNE_ASSIGN(counted, count(own, {}, points, memory));
+    }
+    const uint32_t stride = schema_.stride;
+    std::vector<uint64_t> mine(counted->counts().begin(), counted->counts().end());
+    LUCARNE_TRY(ranks.sum(counted->counts()));
+    auto chunks = counted->plan(memory.chunk_points, most_chunks(memory, stride));
+    const auto counts = counted->by_chunk(mine, chunks.size());
+    std::vector<uint64_t>().swap(mine);
+    std::vector<uint64_t> weights;
+    for (const Chunk& chunk : chunks) weights.push_back(chunk.count);
+    if (std::accumulate(weights.begin(), weights.end(), uint64_t{0}) != points) return inputs_changed();
+    const auto first_of_rank = divide(weights, ranks.count());
+    LUCARNE_ASSIGN(auto lanes, plan_lanes(ranks, counts, first_of_rank));
+    {
+        const auto chunk_of = [&](const std::byte* record) {
+            return counted->chunk_of(root_.place(io::position_of(schema_, record)));
+        };
+        Delivery delivery(ranks, file_, stride, first_of_rank, std::move(lanes), chunk_of,
+                          memory.buffer_bytes);
+        LUCARNE_TRY(own([&](std::span<const std::byte> records) -> Result<void> {
+            if (ranks.stopped()) return failed("the conversion", "has failed on another rank");
+            return delivery.take(records);
+        }));
+        LUCARNE_TRY(delivery.finish());
+    }
+    counted.reset();
+    const auto at = [&](size_t rank) { return chunks.begin() + static_cast<ptrdiff_t>(first_of_rank[rank]); };
+    std::vector<Chunk> coarse(at(ranks.rank()), at(ranks.rank() + 1));
+    for (Chunk& chunk : coarse) {
+        chunk.first = end_;
+        end_ += chunk.count;
+    }
+    LUCARNE_TRY(refine(std::move(coarse), memory));
+    return learn_others(ranks);
+}
+
+/// Puts the chunks of the other ranks before and behind the own ones.
+Result<void> ChunkStore::learn_others(Ranks& ranks) {
+    LUCARNE_ASSIGN(const auto all, share(ranks, as_parcel(std::span<const Chunk>(chunks_))));
+    chunks_.clear();
+    first_of_rank_ = {0};
+    for (const Bytes& list : all) {
+        const auto part = from_parcel<Chunk>(list);
+        chunks_.insert(chunks_.end(), part.begin(), part.end());
+        first_of_rank_.push_back(chunks_.size());
+    }
+    own_ = ChunkRange{first_of_rank_[ranks.rank()], first_of_rank_[ranks.rank() + 1]};
+    return {};
+}
+
+}  // namespace lucarne::octree
