@@ -213,7 +213,7 @@ TEST(Structure, NoConstantStandsInAShaderAndInCpp) {
 /// Hostile names and texts reach a terminal only through io/core/terminal.h, which neutralises them.
 TEST(Structure, OnlyFewFilesWriteToTheTerminal) {
     const std::set<std::string> allowed = {"io/core/terminal.cpp", "io/core/progress.cpp", "io/core/log.cpp",
-                                           "viewer/main.cpp"};
+                                           "viewer/program/program.cpp"};
     const std::regex writes(
         "^[^/]*(, "
         "std(out|err)\\)|\\(std(out|err)[,)]|std::cout|std::cerr|fmt::print|\\b(printf|puts|perror)\\()");

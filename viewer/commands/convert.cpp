@@ -1,3 +1,5 @@
+#include "viewer/commands/convert.h"
+
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -116,6 +118,7 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
                               {"chunks", report.chunks},
                               {"bytes", report.bytes},
                               {"filled", report.filled},
+                              {"exchanged_bytes", report.exchanged},
                               {"estimated_normals", report.estimated_normals},
                               {"estimated_stations", report.estimated_stations},
                               {"stages", std::move(stages)},
@@ -174,8 +177,22 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
     return aside.result(build.output.string());
 }
 
+/// Errors: what several ranks cannot do together.
+Result<void> check_for_ranks(ConvertOptions& options) {
+    auto& build = options.build;
+    if (!build.ranks) return {};
+    constexpr const char* kHow = "start one lucarne without mpirun or srun";
+    if (options.append) return bad_arguments("--append", "is not possible on several ranks", kHow);
+    if (build.resume == octree::Resume::go_on)
+        return bad_arguments("--resume", "is not possible on several ranks", "convert again from the start");
+    build.resume = octree::Resume::never;
+    if (build.ranks->count() == 1) build.ranks = nullptr;
+    return {};
+}
+
 Result<void> convert(ConvertOptions options) {
     auto& build = options.build;
+    LUCARNE_TRY(check_for_ranks(options));
     LUCARNE_ASSIGN(build.memory, build_memory(options.memory));
     const std::string output = build.output.string();
     if (names_scan(output))
@@ -211,7 +228,12 @@ Result<void> convert(ConvertOptions options) {
     log::info("{}: {} in {}, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
               counted(report.points, "points"), counted(report.nodes, "nodes"), bytes_text(report.bytes),
               wall, cpu, summary.text());
-    if (!options.json.empty())
+    if (build.ranks)
+        log::info("{} ranks exchanged {}, {:.1f} bytes a point", build.ranks->count(),
+                  bytes_text(report.exchanged),
+                  static_cast<double>(report.exchanged) /
+                      static_cast<double>(std::max<uint64_t>(1, report.points)));
+    if (!options.json.empty() && (!build.ranks || build.ranks->rank() == 0))
         LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary, aside));
     return aside.result(build.output.string());
 }
@@ -219,10 +241,15 @@ Result<void> convert(ConvertOptions options) {
 }  // namespace
 
 void add_convert(CommandLine& line) {
+    add_convert_of(line, nullptr);
+}
+
+void add_convert_of(CommandLine& line, octree::Ranks* ranks) {
     using octree::NeighbourSearch;
     using octree::NormalsMode;
     auto options = std::make_shared<ConvertOptions>();
     options->build.resume = octree::Resume::later;
+    options->build.ranks = ranks;
     Arguments command = line.add("convert", "Build an octree cache from scans");
     command
         .add("inputs", options->inputs,

@@ -1,0 +1,164 @@
+// What goes wrong on one rank ends all of them with a clear error, and nothing half-written stays.
+#include <fstream>
+#include <string>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/cluster/ranks.h"
+
+namespace lucarne {
+namespace {
+
+using test::lucarne;
+using test::mpirun;
+using test::on_ranks;
+using test::Outcome;
+using test::shell;
+
+constexpr const char* kSmall = " --memory 48M -o ";
+
+class RankFaults : public testing::Test {
+ protected:
+    void SetUp() override {
+        LUCARNE_NEEDS_RANKS();
+        for (const char* scene : {"cornell", "house"}) {
+            const Outcome made = lucarne(std::string("generate ") + scene + " --points 60k -o " +
+                                         folder_ / (std::string(scene) + ".las"));
+            ASSERT_EQ(made.code, 0) << made.output;
+        }
+        std::filesystem::create_directory(folder_ / "out");
+        std::filesystem::create_directory(folder_ / "temp");
+    }
+    std::string inputs() const { return folder_ / "cornell.las" + " " + folder_ / "house.las"; }
+    std::string output() const { return folder_ / "out/a.luc"; }
+    std::string convert() const {
+        return "convert " + inputs() + " --temp " + folder_ / "temp" + kSmall + output();
+    }
+    /// Runs a conversion on three ranks, one of them in another environment.
+    Outcome with_fault(int rank, const std::string& fault) const {
+        const std::string script = folder_ / "rank.sh";
+        std::ofstream(script) << "#!/bin/sh\nif [ \"$OMPI_COMM_WORLD_RANK\" = " << rank
+                              << " ]; then ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" LUCARNE_FAULTS
+                                 "' LUCARNE_FAULT='"
+                              << fault << "'; export ASAN_OPTIONS LD_PRELOAD LUCARNE_FAULT; fi\nexec "
+                              << LUCARNE_BINARY << " " << convert() << "\n";
+        return shell(mpirun(3) + "sh " + script);
+    }
+    void expect_nothing_left() const {
+        for (const char* place : {"out", "temp"})
+            for (const auto& entry : std::filesystem::directory_iterator(folder_ / place))
+                ADD_FAILURE() << entry.path() << " was left";
+    }
+    test::TemporaryFolder folder_;
+};
+
+/// Returns how often a text occurs.
+size_t times(const std::string& text, const std::string& part) {
+    size_t count = 0;
+    for (size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
+    return count;
+}
+
+TEST_F(RankFaults, AKilledRankEndsAllAndLeavesNothing) {
+    const std::string counted = folder_ / "calls";
+    for (const int rank : {0, 1}) {
+        ASSERT_EQ(with_fault(rank, "count:" + counted).code, 0);
+        ASSERT_EQ(std::filesystem::remove(output()), true);
+        const int calls = std::stoi(test::bytes_of(counted));
+        ASSERT_GT(calls, 20);
+        for (const int at : {calls / 3, 2 * calls / 3}) {
+            const Outcome killed = with_fault(rank, "kill:" + std::to_string(at));
+            EXPECT_NE(killed.code, 0) << killed.output;
+            EXPECT_NE(killed.output.find("signal 9"), std::string::npos) << killed.output;
+            expect_nothing_left();
+        }
+    }
+}
+
+TEST_F(RankFaults, AFullDiskOfOneRankIsTheErrorOfAll) {
+    const std::string counted = folder_ / "calls";
+    ASSERT_EQ(with_fault(1, "count:" + counted).code, 0);
+    std::filesystem::remove(output());
+    const int calls = std::stoi(test::bytes_of(counted));
+    const Outcome full = with_fault(1, "full:" + std::to_string(calls / 2));
+    EXPECT_EQ(full.code, 1) << full.output;
+    EXPECT_EQ(times(full.output, "No space left on device"), 3u) << full.output;
+    for (const char* who : {"(rank 0 of 3)", "(rank 1 of 3)", "(rank 2 of 3)"})
+        EXPECT_EQ(times(full.output, who), 1u) << full.output;
+    expect_nothing_left();
+}
+
+TEST_F(RankFaults, ABrokenInputIsSkippedAsByOneProcess) {
+    const std::string broken = folder_ / "broken.las", bytes = test::bytes_of(folder_ / "house.las");
+    std::ofstream(broken, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+    const std::string what = "convert " + inputs() + " " + broken + kSmall;
+    const Outcome one = lucarne(what + folder_ / "one.luc"), several = on_ranks(3, what + output());
+    EXPECT_EQ(one.code, 3) << one.output;
+    EXPECT_EQ(several.code, 3) << several.output;
+    EXPECT_TRUE(test::bytes_of(folder_ / "one.luc") == test::bytes_of(output()));
+}
+
+TEST_F(RankFaults, ASecondConversionToTheSameCacheIsRefused) {
+    // The first one is any process that holds the lock of the unfinished file: this one.
+    const std::string part = folder_ / "out/.a.luc.lucarne-part";
+    std::ofstream(part) << "x";
+    const int held = ::open(part.c_str(), O_RDWR | O_CLOEXEC);
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    ASSERT_EQ(::fcntl(held, F_OFD_SETLK, &lock), 0);
+    const Outcome second = on_ranks(2, convert());
+    EXPECT_EQ(second.code, 1) << second.output;
+    EXPECT_EQ(times(second.output, "another conversion to this cache is running"), 2u) << second.output;
+    EXPECT_EQ(test::bytes_of(part), "x");
+    ::close(held);
+}
+
+TEST_F(RankFaults, WhatAKilledConversionLeftIsReplaced) {
+    std::ofstream(folder_ / "out/.a.luc.lucarne-part") << "left by a power cut";
+    const Outcome done = on_ranks(2, convert());
+    EXPECT_EQ(done.code, 0) << done.output;
+    const Outcome one = lucarne("convert " + inputs() + kSmall + folder_ / "one.luc");
+    ASSERT_EQ(one.code, 0) << one.output;
+    EXPECT_TRUE(test::bytes_of(folder_ / "one.luc") == test::bytes_of(output()));
+}
+
+TEST_F(RankFaults, RanksThatSeeOtherInputsOrOptionsAreRefused) {
+    const std::string script = folder_ / "rank.sh";
+    std::ofstream(script) << "#!/bin/sh\nexec " << LUCARNE_BINARY
+                          << " convert " + inputs() + " --memory 5${OMPI_COMM_WORLD_RANK}M -o " + output() +
+                                 "\n";
+    const Outcome options = shell(mpirun(2) + "sh " + script);
+    EXPECT_EQ(options.code, 1) << options.output;
+    EXPECT_EQ(times(options.output, "rank 1 has another one than rank 0"), 2u) << options.output;
+    std::ofstream(script) << "#!/bin/sh\nif [ \"$OMPI_COMM_WORLD_RANK\" = 1 ]; then first=" +
+                                 folder_ / "house.las" + "; fi\nexec " + LUCARNE_BINARY + " convert $first " +
+                                 folder_ / "cornell.las" + kSmall + output() + "\n";
+    const Outcome seen = shell(mpirun(2) + "sh " + script);
+    EXPECT_EQ(seen.code, 1) << seen.output;
+    EXPECT_EQ(times(seen.output, "rank 1 has another one than rank 0"), 2u) << seen.output;
+    expect_nothing_left();
+}
+
+TEST_F(RankFaults, WhatSeveralRanksCannotDoIsOneClearError) {
+    for (const std::string option : {"--append", "--resume"}) {
+        const Outcome refused = on_ranks(2, convert() + " " + option);
+        EXPECT_EQ(refused.code, 2) << refused.output;
+        EXPECT_EQ(times(refused.output, option + ": is not possible on several ranks"), 2u) << refused.output;
+    }
+    expect_nothing_left();
+}
+
+TEST(WithoutMpi, AConversionInSeveralCopiesIsRefused) {
+    const test::TemporaryFolder folder;
+    const std::string alone = folder / "lucarne";
+    std::filesystem::copy_file(LUCARNE_BINARY, alone);
+    const Outcome refused = shell("OMPI_COMM_WORLD_SIZE=3 " + alone + " convert a.las -o a.luc");
+    EXPECT_EQ(refused.code, 1) << refused.output;
+    EXPECT_NE(refused.output.find("was started in 3 copies by MPI, but"), std::string::npos)
+        << refused.output;
+}
+
+}  // namespace
+}  // namespace lucarne

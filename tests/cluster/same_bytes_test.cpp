@@ -1,0 +1,103 @@
+// Several ranks write the same bytes as one process.
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/cluster/ranks.h"
+
+namespace lucarne {
+namespace {
+
+using test::lucarne;
+using test::on_ranks;
+using test::Outcome;
+
+/// The scans are made once for all tests.
+class SameBytes : public testing::Test {
+ protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<test::TemporaryFolder>();
+        const auto generate = [](const std::string& scene, const std::string& points, const std::string& name,
+                                 const std::string& more = {}) {
+            const Outcome made =
+                lucarne("generate " + scene + " --points " + points + " -o " + *folder_ / name + " " + more);
+            ASSERT_EQ(made.code, 0) << made.output;
+        };
+        generate("nave", "60k", "nave.laz", "--stations 2");
+        generate("house", "30k", "house.ply");
+        generate("survey", "90k", "survey.las");
+        generate("two-rooms", "5k", "rooms.las", "--normals");
+        generate("cornell", "3k", "cornell.las");
+        generate("statue", "700", "statue.ply");
+        std::ofstream rows(*folder_ / "rows.xyz");
+        for (int i = 0; i < 4000; ++i)
+            rows << i % 80 * .11 << ' ' << i / 80 * .13 << ' ' << i % 7 * .01 << '\n';
+        std::ofstream(*folder_ / "empty.xyz") << "";
+        // A place with so many points that it fills chunks of its own.
+        std::ofstream heap(*folder_ / "heap.xyz");
+        for (int i = 0; i < 70000; ++i) heap << "1 2 3\n";
+        for (int i = 0; i < 3000; ++i) heap << i % 60 * .1 << ' ' << i / 60 * .1 << " 0\n";
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+    void SetUp() override { LUCARNE_NEEDS_RANKS(); }
+
+    static std::string inputs(const std::vector<std::string>& names) {
+        std::string all;
+        for (const std::string& name : names) all += *folder_ / name + " ";
+        return all;
+    }
+    /// Converts with one process and on 1, 2, 4 and 7 ranks. 48M makes many chunks of few points.
+    static void expect_same(const std::vector<std::string>& names, const std::string& options) {
+        const std::string alone = *folder_ / "alone.luc", together = *folder_ / "together.luc";
+        const std::string what = "convert " + inputs(names) + options + " --memory 48M --overwrite -o ";
+        const Outcome one = lucarne(what + alone);
+        ASSERT_EQ(one.code, 0) << one.output;
+        const std::string expected = test::bytes_of(alone);
+        ASSERT_GT(expected.size(), 1000u);
+        for (const int ranks : {1, 2, 4, 7}) {
+            const Outcome several = on_ranks(ranks, what + together);
+            ASSERT_EQ(several.code, 0) << several.output;
+            const bool exchanged =
+                several.output.find(std::to_string(ranks) + " ranks exchanged") != std::string::npos;
+            EXPECT_EQ(exchanged, ranks > 1) << several.output;
+            EXPECT_TRUE(test::bytes_of(together) == expected) << ranks << " ranks, " << options;
+        }
+    }
+
+    static std::unique_ptr<test::TemporaryFolder> folder_;
+};
+std::unique_ptr<test::TemporaryFolder> SameBytes::folder_;
+
+TEST_F(SameBytes, OfTilesInSeveralFormatsWithoutNormals) {
+    expect_same({"nave.laz", "house.ply", "survey.las", "rows.xyz"}, "--normals none");
+}
+
+TEST_F(SameBytes, OfManySmallTilesAndOneLargeOne) {
+    expect_same({"statue.ply", "survey.las", "cornell.las", "rows.xyz", "rooms.las"}, "--normals none");
+}
+
+TEST_F(SameBytes, OfFewerTilesThanRanks) {
+    expect_same({"survey.las"}, "--normals none");
+}
+
+TEST_F(SameBytes, OfAPlaceWithMorePointsThanAChunk) {
+    expect_same({"heap.xyz", "cornell.las"}, "--normals none");
+}
+
+TEST_F(SameBytes, WithNormalsHolesAndColours) {
+    expect_same({"nave.laz", "survey.las", "rooms.las", "house.ply"}, "");
+}
+
+TEST_F(SameBytes, WithNormalsOfOneTileWithStations) {
+    expect_same({"nave.laz"}, "--no-fill");
+}
+
+TEST_F(SameBytes, WithKeptNormals) {
+    expect_same({"rooms.las"}, "--normals keep");
+}
+
+}  // namespace
+}  // namespace lucarne
