@@ -62,7 +62,8 @@ class MpiRanks final : public Ranks {
     bool stopped() const override { return stopped_at_ == epoch_; }
     uint64_t sent() const override { return sent_; }
 
-    Result<std::vector<Bytes>> exchange(std::vector<Bytes> parcels) override;
+    using Ranks::exchange;
+    Result<void> exchange(std::span<const Bytes> parcels, std::vector<Bytes>& received) override;
     Result<void> sum(std::span<uint64_t> values) override;
     Result<void> conclude(Result<void> own) override;
     void serve(Answer answer) override {
@@ -199,11 +200,11 @@ Result<void> MpiRanks::sum(std::span<uint64_t> values) {
     return {};
 }
 
-Result<std::vector<Bytes>> MpiRanks::exchange(std::vector<Bytes> parcels) {
+Result<void> MpiRanks::exchange(std::span<const Bytes> parcels, std::vector<Bytes>& received) {
     if (auto all_well = status(nullptr); !all_well) {
         failure_ = all_well.error();
         ++epoch_;
-        return tl::make_unexpected(std::move(all_well).error());
+        return all_well;
     }
     std::vector<uint64_t> outgoing, incoming(count_);
     for (const Bytes& parcel : parcels) outgoing.push_back(parcel.size());
@@ -211,10 +212,10 @@ Result<std::vector<Bytes>> MpiRanks::exchange(std::vector<Bytes> parcels) {
         MPI_Ialltoall(outgoing.data(), 1, MPI_UINT64_T, incoming.data(), 1, MPI_UINT64_T, meetings_,
                       &request);
     });
-    std::vector<Bytes> received(count_);
-    received[rank_] = std::move(parcels[rank_]);
+    received.resize(count_);
+    received[rank_] = parcels[rank_];
     std::vector<MPI_Request> requests;
-    const auto each_piece = [&](Bytes& bytes, const auto& use) {
+    const auto each_piece = [&](auto& bytes, const auto& use) {
         for (size_t at = 0; at < bytes.size(); at += kPiece) {
             const std::lock_guard lock(mpi_);
             use(bytes.data() + at, static_cast<int>(std::min(kPiece, bytes.size() - at)),
@@ -231,12 +232,12 @@ Result<std::vector<Bytes>> MpiRanks::exchange(std::vector<Bytes> parcels) {
     for (size_t step = 1; step < count_; ++step) {  // each rank begins with another one
         const size_t other = (rank_ + step) % count_;
         sent_ += parcels[other].size();
-        each_piece(parcels[other], [&](std::byte* from, int bytes, MPI_Request& request) {
+        each_piece(parcels[other], [&](const std::byte* from, int bytes, MPI_Request& request) {
             MPI_Isend(from, bytes, MPI_BYTE, static_cast<int>(other), 0, meetings_, &request);
         });
     }
     complete_all(requests);
-    return received;
+    return {};
 }
 
 Bytes MpiRanks::receive(MPI_Comm comm, const MPI_Status& found) {

@@ -14,14 +14,14 @@ Result<std::vector<Ranks::Bytes>> share(Ranks& ranks, const Ranks::Bytes& bytes)
 Result<Ranks::Bytes> hear_first(Ranks& ranks, Ranks::Bytes bytes) {
     std::vector<Ranks::Bytes> parcels(ranks.count());
     if (ranks.rank() == 0) std::ranges::fill(parcels, bytes);
-    LUCARNE_ASSIGN(auto heard, ranks.exchange(std::move(parcels)));
+    LUCARNE_ASSIGN(auto heard, ranks.exchange(parcels));
     return std::move(heard[0]);
 }
 
 Result<std::vector<Ranks::Bytes>> tell_first(Ranks& ranks, Ranks::Bytes bytes) {
     std::vector<Ranks::Bytes> parcels(ranks.count());
     parcels[0] = std::move(bytes);
-    return ranks.exchange(std::move(parcels));
+    return ranks.exchange(parcels);
 }
 
 Result<void> meet(Ranks& ranks) {

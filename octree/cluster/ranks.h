@@ -23,8 +23,14 @@ class Ranks {
     virtual size_t rank() const = 0;   ///< of this process, from 0
     virtual size_t count() const = 0;  ///< of ranks
 
-    /// Sends parcels[i] to rank i. Returns what each rank sent to this one. A parcel may be of any size.
-    virtual Result<std::vector<Bytes>> exchange(std::vector<Bytes> parcels) = 0;
+    /// Sends parcels[i] to rank i. `received` becomes what each rank sent to this one; its memory is used
+    /// again. A parcel may be of any size.
+    virtual Result<void> exchange(std::span<const Bytes> parcels, std::vector<Bytes>& received) = 0;
+    Result<std::vector<Bytes>> exchange(std::span<const Bytes> parcels) {
+        std::vector<Bytes> received;
+        LUCARNE_TRY(exchange(parcels, received));
+        return received;
+    }
     /// Replaces the values by their sums over all ranks, which have equally many of them.
     virtual Result<void> sum(std::span<uint64_t> values) = 0;
     /// Ends a piece of work: returns success if all ranks succeeded, else everywhere the same error, that of

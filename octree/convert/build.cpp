@@ -53,13 +53,20 @@ auto timed(BuildReport& report, const char* name, const Stage& stage) {
 }
 
 /// Returns a stage's outcome: restored from an interrupted build's record, else from `run`, which is then
-/// recorded.
+/// recorded. If one of several ranks has no sound record, all run the stage again.
 template <class Restore, class Run>
-auto resumable(Workspace& work, const char* stage, const Restore& restore, const Run& run)
+auto resumable(Workspace& work, Ranks* ranks, const char* stage, const Restore& restore, const Run& run)
     -> decltype(run()) {
-    if (const auto* record = work.finished(stage)) {
-        if (auto before = restore(*record)) return before;
-        log::warn("the stored result of stage '{}' is damaged; the stage is run again", stage);
+    {
+        const auto* record = work.finished(stage);
+        std::optional<decltype(run())> before;
+        if (record) before = restore(*record);
+        const bool sound = before && *before;
+        if (record && !sound)
+            log::warn("the stored result of stage '{}' is damaged; the stage is run again", stage);
+        uint64_t all = sound ? 1 : 0;
+        if (ranks) LUCARNE_TRY(ranks->sum({&all, 1}));
+        if (all == (ranks ? ranks->count() : 1)) return std::move(*before);
     }
     auto outcome = run();
     if (outcome) LUCARNE_TRY(work.finish(stage, outcome->save()));
@@ -115,7 +122,8 @@ Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, Inp
         with_steps(stations ? with_point_stations(points, inputs.schema(), facts.spans) : points, steps,
                    store.schema().stride);
     if (options.ranks) {
-        LUCARNE_TRY(store.fill(pass, facts.points, memory, *options.ranks, std::move(counted)));
+        LUCARNE_TRY(
+            store.fill(pass, facts.points, memory, *options.ranks, work.resumable(), std::move(counted)));
     } else {
         LUCARNE_TRY(store.fill(pass, facts.points, memory, std::move(counted)));
     }
@@ -184,13 +192,13 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
 /// Does the same on several ranks: each builds its chunks into scratch files, from which the nodes get into
 /// the cache. Returns the CPU time of compression.
 Result<double> build_together(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
-                              const MemoryPlan& memory, const std::filesystem::path& folder,
+                              const MemoryPlan& memory, bool keep, const std::filesystem::path& folder,
                               SharedCache& cache, Steps& steps, Ranks& ranks) {
     LUCARNE_ASSIGN(CacheWriter staged, CacheWriter::stage(folder));
     LUCARNE_ASSIGN(Assembler own, Assembler::create(staged, loader, limits, folder));
     const size_t first = store.own().first;
     own.only_a_part(first > 0 ? &store.chunks()[first - 1].key : nullptr);
-    LUCARNE_TRY(build_chunks(store, loader, limits, memory, false, own, steps, &ranks));
+    LUCARNE_TRY(build_chunks(store, loader, limits, memory, keep, own, steps, &ranks));
     return join_ranks(ranks, {loader, limits, staged, own}, cache.writer ? &*cache.writer : nullptr,
                       *cache.output, folder);
 }
@@ -202,8 +210,14 @@ uint64_t points_of(const ChunkStore& store) {
     return points;
 }
 
-/// Builds the cache; of several ranks each does its part. `shared` becomes the file that they write.
-Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache>& shared) {
+/// What stays until all ranks are done, because any of them may fail.
+struct Held {
+    std::optional<SharedCache> cache;
+    std::optional<Workspace> work;
+};
+
+/// Builds the cache; of several ranks each does its part.
+Result<BuildReport> build(const BuildOptions& options, Held& held) {
     LUCARNE_TRY(check_output(options.output, options.overwrite));
     const unsigned threads =
         options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
@@ -228,14 +242,17 @@ Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache
     Ranks* const ranks = options.ranks;
     if (ranks) {
         LUCARNE_TRY(check_ranks(*ranks, options));
-        LUCARNE_ASSIGN(shared, SharedCache::create(*ranks, options, folder));
+        LUCARNE_ASSIGN(held.cache, SharedCache::create(*ranks, options, folder));
     }
     const InputRange own = ranks ? inputs_of_rank(inputs, *ranks) : InputRange{0, inputs.inputs()};
-    const std::string identity = options.resume == Resume::never ? "" : build_identity(options);
-    LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
+    const std::string identity = options.resume == Resume::never ? "" : build_identity(options, own);
+    LUCARNE_ASSIGN(held.work,
+                   Workspace::open(folder, options.output, identity, options.resume,
+                                   ranks ? std::optional(ranks->rank()) : std::optional<size_t>()));
+    Workspace& work = *held.work;
     std::optional<CountGrid> counted;
     LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
-                       return resumable(work, "scan", ScanFacts::restore, [&] {
+                       return resumable(work, ranks, "scan", ScanFacts::restore, [&] {
                            return scan_and_count(inputs, own, memory, options, counted);
                        });
                    }));
@@ -258,7 +275,7 @@ Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache
     LUCARNE_ASSIGN(
         ChunkStore store, timed(report, "chunk", [&] {
             return resumable(
-                work, "chunk",
+                work, ranks, "chunk",
                 [&](const auto& record) { return kept_chunks(work, inputs, facts, stations, record); },
                 [&] {
                     return fill_chunks(work, inputs, own, facts, memory, options, stations,
@@ -279,7 +296,7 @@ Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache
                                               folder};
         LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
                            return resumable(
-                               work, "normals",
+                               work, ranks, "normals",
                                [&](const auto& record) { return kept_surface(work, store, record); },
                                [&] { return find_surface(work, store, bare.scans, settings); });
                        }));
@@ -293,8 +310,8 @@ Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache
     LUCARNE_TRY(timed(report, "build", [&]() -> Result<void> {
         Steps steps(options.listener, "building", points_of(store));
         if (ranks) {
-            LUCARNE_ASSIGN(encoding,
-                           build_together(store, loader, limits, memory, folder, *shared, steps, *ranks));
+            LUCARNE_ASSIGN(encoding, build_together(store, loader, limits, memory, work.resumable(), folder,
+                                                    *held.cache, steps, *ranks));
             return {};
         }
         if (options.listener) options.listener->building(loader.schema());
@@ -312,7 +329,7 @@ Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache
         LUCARNE_TRY(ranks->sum({&report.exchanged, 1}));
         if (ranks->rank() > 0) return report;  // rank 0 does what is left
     }
-    CacheWriter& writer = ranks ? *shared->writer : *alone;
+    CacheWriter& writer = ranks ? *held.cache->writer : *alone;
     SourceHeader header = bare;
     header.schema = loader.schema();
     LUCARNE_ASSIGN(header.station_colours,
@@ -323,7 +340,6 @@ Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache
         report.filled = header.filling->points;
     }
     LUCARNE_TRY(timed(report, "write", [&] { return writer.finish(header); }));
-    work.done();
     report.points = facts.points;
     report.dropped = facts.dropped;
     report.estimated_normals = normals.value_or(false) ? facts.without_normal : 0;
@@ -338,10 +354,11 @@ Result<BuildReport> build(const BuildOptions& options, std::optional<SharedCache
 }  // namespace
 
 Result<BuildReport> build_cache(const BuildOptions& options) {
-    std::optional<SharedCache> shared;  // until all ranks are done, because any of them may have to remove it
-    auto report = build(options, shared);
-    if (!options.ranks) return report;
-    LUCARNE_TRY(options.ranks->conclude(report ? Result<void>() : tl::make_unexpected(report.error())));
+    Held held;
+    auto report = build(options, held);
+    if (options.ranks)
+        LUCARNE_TRY(options.ranks->conclude(report ? Result<void>() : tl::make_unexpected(report.error())));
+    if (report) held.work->done();
     return report;
 }
 

@@ -35,8 +35,8 @@ struct BuildOptions {
     uint32_t neighbours = 16;  ///< number of neighbours for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
     bool fill = true;  ///< look for holes, and store surfels that fill them (octree/holes)
-    /// The processes that build the cache together; null: this one alone. All have the same options. They do
-    /// not resume.
+    /// The processes that build the cache together; null: this one alone. All have the same options. What
+    /// they resume must have been built by as many.
     Ranks* ranks = nullptr;
     BuildListener* listener = nullptr;  ///< told about the progress (build_listener.h); outlives the build
 };

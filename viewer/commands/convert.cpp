@@ -181,11 +181,9 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
 Result<void> check_for_ranks(ConvertOptions& options) {
     auto& build = options.build;
     if (!build.ranks) return {};
-    constexpr const char* kHow = "start one lucarne without mpirun or srun";
-    if (options.append) return bad_arguments("--append", "is not possible on several ranks", kHow);
-    if (build.resume == octree::Resume::go_on)
-        return bad_arguments("--resume", "is not possible on several ranks", "convert again from the start");
-    build.resume = octree::Resume::never;
+    if (options.append)
+        return bad_arguments("--append", "is not possible on several ranks",
+                             "start one lucarne without mpirun or srun");
     if (build.ranks->count() == 1) build.ranks = nullptr;
     return {};
 }

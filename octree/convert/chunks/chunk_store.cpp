@@ -77,6 +77,9 @@ Result<ChunkStore> ChunkStore::restore(ScratchFile file, const io::Schema& schem
     store.chunks_ = reader.get_all<Chunk>();
     store.dealt_ = reader.get_all<Chunk>();
     store.end_ = reader.get<uint64_t>();
+    store.first_of_rank_ = reader.get_all<uint64_t>();
+    const auto own = reader.get<ChunkRange>();
+    if (!store.first_of_rank_.empty()) store.own_ = own;
     if (!reader.sound()) return failed("chunks", "have an incomplete record");
     for (const auto& chunk : store.dealt_) LUCARNE_TRY(store.check(chunk));
     return store;
@@ -87,10 +90,12 @@ std::vector<std::byte> ChunkStore::save() const {
     writer.put_all(chunks_);
     writer.put_all(dealt_);
     writer.put(end_);
+    writer.put_all(first_of_rank_);
+    writer.put(own());
     return writer.take();
 }
 
-Result<void> ChunkStore::check(const Chunk& chunk) const {
+Result<uint64_t> ChunkStore::sum_of(const Chunk& chunk) const {
     uint64_t sum = 0;
     std::vector<std::byte> piece(chunk.piece);
     const uint64_t begin = chunk.first * schema_.stride, bytes = chunk.count * schema_.stride;
@@ -99,6 +104,11 @@ Result<void> ChunkStore::check(const Chunk& chunk) const {
         LUCARNE_TRY(file_.read_at(begin + at, part));
         sum = chained_sum(sum, part);
     }
+    return sum;
+}
+
+Result<void> ChunkStore::check(const Chunk& chunk) const {
+    LUCARNE_ASSIGN(const uint64_t sum, sum_of(chunk));
     return sum == chunk.sum ? Result<void>{} : failed("chunks", "have changed since they were written");
 }
 

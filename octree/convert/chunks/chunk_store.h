@@ -52,9 +52,9 @@ class ChunkStore {
     /// Sorts the points of all ranks into chunks, each of which goes to one rank: the same chunks as one
     /// process makes of all inputs. A meeting of the ranks. `own`: the points that this rank reads; the ranks
     /// read consecutive parts of the inputs. `points`: of all ranks. `counted`: as above, of this rank's
-    /// points; all ranks have it or none.
+    /// points; all ranks have it or none. `resumable`: the store will be saved.
     Result<void> fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
-                      std::optional<CountGrid> counted);
+                      bool resumable, std::optional<CountGrid> counted);
     /// The chunks in this process; of the others only their cubes and counts are known.
     ChunkRange own() const { return own_ ? *own_ : ChunkRange{0, chunks_.size()}; }
     /// The rank that has a chunk.
@@ -81,6 +81,7 @@ class ChunkStore {
     void discard(size_t chunk);
 
  private:
+    Result<uint64_t> sum_of(const Chunk& chunk) const;
     Result<void> check(const Chunk& chunk) const;
     Result<CountGrid> count(const Pass& pass, const NodeKey& cube, uint64_t points,
                             const MemoryPlan& memory) const;
@@ -96,9 +97,9 @@ class ChunkStore {
     io::Schema points_schema_, schema_;
     Cube root_;
     std::vector<Chunk> chunks_;
-    std::vector<Chunk> dealt_;           ///< the chunks as written, before those of one place were divided
-    std::optional<ChunkRange> own_;      ///< empty: all
-    std::vector<size_t> first_of_rank_;  ///< the first chunk of each rank, and the end
+    std::vector<Chunk> dealt_;             ///< the chunks as written, before those of one place were divided
+    std::optional<ChunkRange> own_;        ///< empty: all
+    std::vector<uint64_t> first_of_rank_;  ///< the first chunk of each rank, and the end
     uint64_t end_ = 0;  ///< points written so far, including those of chunks that were split again
 };
 

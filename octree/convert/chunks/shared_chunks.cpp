@@ -13,6 +13,7 @@ using Bytes = Ranks::Bytes;
 
 constexpr uint64_t kParcelShare = 4;  ///< the parcels of a round have this part of the buffers' memory
 constexpr uint64_t kLeastParcel = 64 << 10;
+constexpr uint32_t kSummed = 256 << 10;  ///< bytes of a step of a chunk's checksum
 
 template <class T>
 Bytes as_parcel(std::span<const T> values) {
@@ -73,16 +74,19 @@ class Delivery {
  private:
     void start_round() {
         parcels_.resize(ranks_.count());
-        for (Bytes& parcel : parcels_) parcel.assign(1, std::byte{0});
+        for (Bytes& parcel : parcels_) {
+            parcel.reserve(most_ + 1);
+            parcel.assign(1, std::byte{0});
+        }
     }
     /// A parcel begins with a byte that tells whether it is the sender's last one.
     Result<void> round(bool last) {
         for (Bytes& parcel : parcels_) parcel[0] = std::byte{last};
-        LUCARNE_ASSIGN(const auto received, ranks_.exchange(std::move(parcels_)));
+        LUCARNE_TRY(ranks_.exchange(parcels_, received_));
         all_done_ = true;
-        for (size_t sender = 0; sender < received.size(); ++sender) {
-            all_done_ = all_done_ && received[sender][0] == std::byte{1};
-            LUCARNE_TRY(store(sender, std::span(received[sender]).subspan(1)));
+        for (size_t sender = 0; sender < received_.size(); ++sender) {
+            all_done_ = all_done_ && received_[sender][0] == std::byte{1};
+            LUCARNE_TRY(store(sender, std::span(received_[sender]).subspan(1)));
         }
         start_round();
         return {};
@@ -122,7 +126,7 @@ class Delivery {
     Place chunk_of_;
     uint64_t most_;                  ///< bytes of a parcel
     std::vector<uint32_t> rank_of_;  ///< by chunk
-    std::vector<Bytes> parcels_;
+    std::vector<Bytes> parcels_, received_;
     bool all_done_ = false;
     std::vector<uint32_t> chunks_;
     std::vector<size_t> starts_;
@@ -137,7 +141,7 @@ Result<std::vector<std::vector<Lane>>> plan_lanes(Ranks& ranks, std::span<const 
     for (size_t rank = 0; rank < ranks.count(); ++rank)
         parcels.push_back(
             as_parcel(counts.subspan(first_of_rank[rank], first_of_rank[rank + 1] - first_of_rank[rank])));
-    LUCARNE_ASSIGN(const auto received, ranks.exchange(std::move(parcels)));
+    LUCARNE_ASSIGN(const auto received, ranks.exchange(parcels));
     std::vector<std::vector<Lane>> lanes;
     for (const Bytes& parcel : received) {
         auto& of_sender = lanes.emplace_back();
@@ -155,7 +159,7 @@ Result<std::vector<std::vector<Lane>>> plan_lanes(Ranks& ranks, std::span<const 
 }  // namespace
 
 Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
-                              std::optional<CountGrid> counted) {
+                              bool resumable, std::optional<CountGrid> counted) {
     if (!counted) {
         LUCARNE_ASSIGN(counted, count(own, {}, points, memory));
     }
@@ -188,6 +192,9 @@ Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan
     for (Chunk& chunk : coarse) {
         chunk.first = end_;
         end_ += chunk.count;
+        if (!resumable) continue;
+        chunk.piece = kSummed;
+        LUCARNE_ASSIGN(chunk.sum, sum_of(chunk));
     }
     LUCARNE_TRY(refine(std::move(coarse), memory));
     return learn_others(ranks);

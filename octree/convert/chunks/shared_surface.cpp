@@ -44,7 +44,7 @@ Result<OrientationSigns> join_votes(Ranks& ranks, const std::vector<ChunkVotes>&
         for (size_t i = 0; i < signs.size(); ++i) writers[owner(i)].put_all(signs[i]);
         for (size_t rank = 0; rank < parcels.size(); ++rank) parcels[rank] = writers[rank].take();
     }
-    LUCARNE_ASSIGN(const auto received, ranks.exchange(std::move(parcels)));
+    LUCARNE_ASSIGN(const auto received, ranks.exchange(parcels));
     ByteReader reader(received[0]);
     OrientationSigns signs(chunks);
     for (size_t chunk = own.first; chunk < own.end; ++chunk) signs[chunk] = reader.get_all<int8_t>();
@@ -59,7 +59,7 @@ Result<std::vector<BorderMessage>> deliver(Ranks& ranks, const std::vector<Borde
     for (const BorderMessage& message : outgoing) writers[owner(message.to)].put(message);
     std::vector<Bytes> parcels;
     for (ByteWriter& writer : writers) parcels.push_back(writer.take());
-    LUCARNE_ASSIGN(const auto received, ranks.exchange(std::move(parcels)));
+    LUCARNE_ASSIGN(const auto received, ranks.exchange(parcels));
     std::vector<BorderMessage> messages;
     for (const Bytes& parcel : received) {
         ByteReader reader(parcel);

@@ -104,7 +104,7 @@ Result<SurfaceStore> SurfaceStore::restore(const ChunkStore& chunks, ScratchFile
     if (!reader.sound() || sums.size() != store.sums_.size())
         return failed("normals", "have an incomplete record");
     store.sums_ = sums;
-    for (size_t chunk = 0; chunk < sums.size(); ++chunk) {
+    for (size_t chunk = chunks.own().first; chunk < chunks.own().end; ++chunk) {
         LUCARNE_ASSIGN(const auto points, store.read(chunk, 0, store.count(chunk)));
         if (format::checksum(std::as_bytes(std::span(points))) != sums[chunk])
             return failed("normals", "have changed since they were written");

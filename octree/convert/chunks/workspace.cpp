@@ -77,12 +77,13 @@ void report_others(const fs::path& temp_folder, const fs::path& own) {
 }  // namespace
 
 Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& output,
-                                  const std::string& identity, Resume resume) {
+                                  const std::string& identity, Resume resume, std::optional<size_t> rank) {
     Workspace work;
     work.temp_folder_ = temp_folder;
     if (resume == Resume::never) return work;
     std::error_code error;
-    const std::string whole = fs::absolute(output, error).lexically_normal().string();
+    std::string whole = fs::absolute(output, error).lexically_normal().string();
+    if (rank) whole += fmt::format("\nrank {}", *rank);
     const auto hash = format::checksum(std::as_bytes(std::span(whole)));
     const fs::path folder = temp_folder / fmt::format("{:016x}{}", hash, kSuffix);
     LUCARNE_TRY(ScratchFile::create(temp_folder));  // reports errors of the parent folder
@@ -93,7 +94,7 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     LUCARNE_ASSIGN(work.journal_, UpdateFile::open_private(folder / kJournal, true, kBusy));
     work.folder_ = folder;
     work.resume_ = resume;
-    report_others(temp_folder, folder);
+    if (!rank) report_others(temp_folder, folder);  // ranks begin at different times
     LUCARNE_TRY(work.start(whole + "\n" + identity, resume));
     return work;
 }

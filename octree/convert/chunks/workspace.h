@@ -26,10 +26,11 @@ enum class Resume {
 class Workspace {
  public:
     /// `identity` says what is built from which inputs with which options; leftovers of another build are not
-    /// used. Errors: another process is building `output`; no folder can be made.
+    /// used. Of several ranks that build one output each has a folder of its own. Errors: another process is
+    /// building `output`; no folder can be made.
     static Result<Workspace> open(const std::filesystem::path& temp_folder,
                                   const std::filesystem::path& output, const std::string& identity,
-                                  Resume resume);
+                                  Resume resume, std::optional<size_t> rank = {});
     Workspace(Workspace&& other) noexcept { *this = std::move(other); }
     Workspace& operator=(Workspace&& other) noexcept;
     /// Removes the folder, unless `go_on` was given, a stage was finished, and the output was not.

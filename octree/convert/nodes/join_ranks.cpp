@@ -123,7 +123,7 @@ Result<double> join_ranks(Ranks& ranks, const RankNodes& nodes, CacheWriter* cac
         }
         seconds = top.encode_seconds();
     }
-    LUCARNE_ASSIGN(const auto received, ranks.exchange(std::move(parcels)));
+    LUCARNE_ASSIGN(const auto received, ranks.exchange(parcels));
     const auto parts = ByteReader(received[0]).get_all<Placed>();
     LUCARNE_TRY(copy(staged, parts, output));
     LUCARNE_TRY(meet(ranks));
