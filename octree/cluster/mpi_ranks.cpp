@@ -22,14 +22,14 @@ constexpr size_t kMostAnswer = size_t{1} << 30;  ///< bytes
 constexpr size_t kSumPiece = size_t{1} << 20;    ///< values added up at a time
 constexpr int kQuestion = 1, kStop = 2;          ///< tags
 /// Pauses while waiting: short at first, so that small messages are fast.
-constexpr auto kFirstPause = std::chrono::microseconds(20), kLastPause = std::chrono::microseconds(500);
+constexpr auto kFirstPause = std::chrono::microseconds(20), kLastPause = std::chrono::microseconds(1000);
 
 /// Waits longer from time to time.
 class Patience {
  public:
     void wait() {
         std::this_thread::sleep_for(pause_);
-        pause_ = std::min(pause_ + pause_ / 8, kLastPause);
+        pause_ = std::min(pause_ + pause_ / 2, kLastPause);
     }
     void reset() { pause_ = kFirstPause; }
 

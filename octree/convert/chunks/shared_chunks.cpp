@@ -37,16 +37,18 @@ struct Lane {
 /// in which they were read.
 class Delivery {
  public:
-    using Place = std::function<uint32_t(const std::byte* record)>;
-    /// `lanes`: of each sender, of each chunk of this rank. `chunk_of` returns the chunk of a record.
-    Delivery(Ranks& ranks, ScratchFile& file, uint32_t stride, std::vector<size_t> first_of_rank,
-             std::vector<std::vector<Lane>> lanes, Place chunk_of, uint64_t bytes)
+    /// `lanes`: of each sender, of each chunk of this rank. `grid` and `root` tell the chunk of a record.
+    Delivery(Ranks& ranks, ScratchFile& file, const io::Schema& schema, const Cube& root,
+             const CountGrid& grid, std::vector<size_t> first_of_rank, std::vector<std::vector<Lane>> lanes,
+             uint64_t bytes)
         : ranks_(ranks),
           file_(file),
-          stride_(stride),
+          schema_(schema),
+          root_(root),
+          grid_(grid),
+          stride_(schema.stride),
           first_(std::move(first_of_rank)),
           lanes_(std::move(lanes)),
-          chunk_of_(std::move(chunk_of)),
           most_(std::max(kLeastParcel, bytes / kParcelShare / ranks.count())) {
         for (size_t rank = 0; rank < ranks.count(); ++rank)
             rank_of_.resize(first_[rank + 1], static_cast<uint32_t>(rank));
@@ -55,7 +57,7 @@ class Delivery {
 
     Result<void> take(std::span<const std::byte> records) {
         for (size_t at = 0; at < records.size(); at += stride_) {
-            const uint32_t chunk = chunk_of_(&records[at]);
+            const uint32_t chunk = chunk_of(&records[at]);
             Bytes& parcel = parcels_[rank_of_[chunk]];
             parcel.insert(parcel.end(), &records[at], &records[at] + stride_);
             if (parcel.size() + stride_ > most_) LUCARNE_TRY(round(false));
@@ -99,7 +101,7 @@ class Delivery {
         chunks_.resize(count);
         starts_.assign(lanes.size() + 1, 0);
         for (size_t i = 0; i < count; ++i) {
-            chunks_[i] = chunk_of_(&records[i * stride_]) - static_cast<uint32_t>(own);
+            chunks_[i] = chunk_of(&records[i * stride_]) - static_cast<uint32_t>(own);
             assert(chunks_[i] < lanes.size());
             ++starts_[chunks_[i] + 1];
         }
@@ -118,12 +120,18 @@ class Delivery {
         return {};
     }
 
+    uint32_t chunk_of(const std::byte* record) const {
+        return grid_.chunk_of(root_.place(io::position_of(schema_, record)));
+    }
+
     Ranks& ranks_;
     ScratchFile& file_;
+    const io::Schema& schema_;
+    const Cube& root_;
+    const CountGrid& grid_;
     uint32_t stride_;
     std::vector<size_t> first_;
     std::vector<std::vector<Lane>> lanes_;
-    Place chunk_of_;
     uint64_t most_;                  ///< bytes of a parcel
     std::vector<uint32_t> rank_of_;  ///< by chunk
     std::vector<Bytes> parcels_, received_;
@@ -175,10 +183,7 @@ Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan
     const auto first_of_rank = divide(weights, ranks.count());
     LUCARNE_ASSIGN(auto lanes, plan_lanes(ranks, counts, first_of_rank));
     {
-        const auto chunk_of = [&](const std::byte* record) {
-            return counted->chunk_of(root_.place(io::position_of(schema_, record)));
-        };
-        Delivery delivery(ranks, file_, stride, first_of_rank, std::move(lanes), chunk_of,
+        Delivery delivery(ranks, file_, schema_, root_, *counted, first_of_rank, std::move(lanes),
                           memory.buffer_bytes);
         LUCARNE_TRY(own([&](std::span<const std::byte> records) -> Result<void> {
             if (ranks.stopped()) return failed("the conversion", "has failed on another rank");
