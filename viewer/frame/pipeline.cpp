@@ -11,6 +11,7 @@
 #include "gi/gl_frame.h"
 #include "gi/lighting/light_options.h"
 #include "gi/raster/blend.h"
+#include "gi/raster/rims.h"
 #include "gi/registry.h"
 #include "gi/scene/views.h"
 #include "io/core/log.h"
@@ -235,6 +236,9 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
         LUCARNE_TRY(gi::blend(device, cuts.view(), camera, gbuffer, size));
         times.end();
     }
+    times.begin("edges");
+    LUCARNE_TRY(gi::turn_rims(device, camera, gbuffer));
+    times.end();
     LUCARNE_TRY(draw_with(*drawing.engine, request, presentation.sample(false)));
     return drawing.compared ? draw_with(*drawing.compared, request, presentation.sample(true))
                             : Result<void>();

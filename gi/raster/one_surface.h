@@ -1,0 +1,52 @@
+// Whether two texels of a G-buffer show one surface, and what follows for the rims of surfaces, shared by C++
+// and GLSL.
+#ifndef LUCARNE_GI_RASTER_ONE_SURFACE_H
+#define LUCARNE_GI_RASTER_ONE_SURFACE_H
+
+#include "gi/raster/blend_weights.h"
+#include "gi/shared/camera.h"
+#include "gi/shared/gbuffer.h"
+#include "gi/shared/language.h"
+
+#ifdef __cplusplus
+namespace lucarne::gi::raster {
+#endif
+
+// A disc that is seen from behind at a steeper angle is no rim. The cosine of the angle between its normal
+// and the ray.
+LUCARNE_CONST float kCosRim = 0.5f;  // 60 degrees
+// A rim looks for the front of its surface so many pixels away, in eight directions.
+LUCARNE_CONST uint kRimSteps = 4u;  // 1, 2, 4 and 8 pixels
+
+// Returns the normal of a texel as its surfels store it: the two sides of a thin wall have opposite ones.
+LUCARNE_FN vec3 stored_normal(GBufferTexel texel) {
+    vec3 normal = texel_normal(texel);
+    return (texel.albedo & kTexelFromBehind) != 0u ? -normal : normal;
+}
+
+// Returns whether two texels show one smooth surface: no crease lies between their normals, and each point
+// lies in the slab of blending about the other's plane. `across` leads from one point to the other, m.
+// `reach`: by which a surface may bend away between the two pixels, m.
+LUCARNE_FN bool is_one_surface(GBufferTexel a, GBufferTexel b, vec3 across, float reach) {
+    if (((a.material ^ b.material) & 0xffffu) != 0u || ((a.albedo ^ b.albedo) & kSurfelHasNormal) != 0u)
+        return false;
+    vec3 na = stored_normal(a);
+    vec3 nb = stored_normal(b);
+    float most = kSlab * max(texel_radius(a), texel_radius(b)) + reach;
+    return dot(na, nb) > kCosCrease && abs(dot(na, across)) <= most && abs(dot(nb, across)) <= most;
+}
+
+// Returns whether a texel may be a rim: a disc seen from behind, at a low angle. `ray`: unit, from the eye.
+LUCARNE_FN bool may_be_rim(GBufferTexel texel, vec3 ray) {
+    return (texel.albedo & kTexelFromBehind) != 0u && dot(texel_normal(texel), ray) >= -kCosRim;
+}
+// Returns a normal turned so that it is at right angles to a ray (unit).
+LUCARNE_FN vec3 turned_across(vec3 normal, vec3 ray) {
+    vec3 turned = normal - dot(normal, ray) * ray;
+    return turned * inversesqrt(max(dot(turned, turned), 1e-12f));
+}
+
+#ifdef __cplusplus
+}  // namespace lucarne::gi::raster
+#endif
+#endif

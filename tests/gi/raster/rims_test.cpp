@@ -1,0 +1,137 @@
+// Rims of surfaces: the discs beyond an outline, which are seen from behind.
+#include "gi/raster/rims.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <glm/geometric.hpp>
+
+#include "tests/gi/raster/drawn_surfels.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr float kColumnRadius = 0.3f;  // m
+const glm::vec2 kAxis(0, 3);           // of the column: x and y, m
+
+/// A column that stands before a wall, with an uneven pattern of surfels whose normals point outward.
+std::vector<Surfel> column_before_wall(float spacing) {
+    auto surfels = wall(5, 3, 2 * spacing, kRed, 3);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> jitter(-0.5f, 0.5f);
+    for (float turn = 0; turn < 6.2831f; turn += spacing / kColumnRadius)
+        for (float z = -1; z <= 1; z += spacing) {
+            const float angle = turn + jitter(random) * spacing / kColumnRadius;
+            const float height = z + jitter(random) * spacing;
+            const glm::vec3 normal(std::cos(angle), std::sin(angle), 0);
+            const glm::vec3 at(kAxis.x + kColumnRadius * normal.x, kAxis.y + kColumnRadius * normal.y,
+                               height);
+            surfels.push_back({at, normal, kWhite, 0, spacing * spacing, 0});
+        }
+    return surfels;
+}
+
+class Rims : public GBufferTest {
+ protected:
+    /// Draws surfels blended, with their rims turned or not.
+    Picture picture(const std::vector<Surfel>& surfels, const CameraView& view, bool turned) {
+        const SurfelCloud cloud(surfels, {{-32, -32, -32}, 64}, 1024);
+        auto loaded = load_cloud(*device, cloud);
+        EXPECT_TRUE(loaded) << loaded.error().line();
+        GBuffer target;
+        EXPECT_TRUE(rasterize(*device, (*loaded)->cut, view, target));
+        EXPECT_TRUE(blend(*device, (*loaded)->cut, view, target));
+        if (turned) {
+            EXPECT_TRUE(turn_rims(*device, view, target));
+        }
+        const size_t pixels = size_t{view.width} * view.height;
+        return {view,
+                target.texels.download_all<GBufferTexel>(pixels),
+                target.ids.download_all<uint32_t>(pixels),
+                {}};
+    }
+};
+
+/// Returns the number of pixels of the column whose normal points into it.
+size_t lit_inside(const Picture& p) {
+    size_t count = 0;
+    for (size_t at = 0; at < p.texels.size(); ++at) {
+        if (p.empty(at) || p.red(at)) continue;
+        const glm::vec2 pixel(static_cast<float>(at % p.view.width), static_cast<float>(at / p.view.width));
+        const glm::vec3 place = texel_position(p.view, pixel, p.texels[at]);
+        const glm::vec2 outward = glm::normalize(glm::vec2(place) - kAxis);
+        if (glm::dot(glm::vec2(texel_normal(p.texels[at])), outward) < 0) ++count;
+    }
+    return count;
+}
+
+TEST_P(Rims, OutlinesOfASolidAreLitOnItsOutside) {
+    for (const float spacing : {0.008f, 0.03f, 0.06f}) {
+        const auto surfels = column_before_wall(spacing);
+        const CameraView view = look({0, 0, 0}, {0, 1, 0}, 320, 240, 0.7f);
+        EXPECT_GT(lit_inside(picture(surfels, view, false)), 20u) << spacing;
+        EXPECT_EQ(lit_inside(picture(surfels, view, true)), 0u) << spacing;
+    }
+}
+
+TEST_P(Rims, SurfacesSeenFromBehindStayAsTheyAre) {
+    // Walls seen from behind, straight on and at a low angle.
+    for (const glm::vec3& eye : {glm::vec3(0, 5, 0), glm::vec3(3, 2.6f, 0)}) {
+        const auto surfels = wall(2, 2, 0.02f, kWhite, 2);
+        const CameraView view = look(eye, {0, 2, 0}, 160, 120, 0.9f);
+        const Picture before = picture(surfels, view, false), after = picture(surfels, view, true);
+        EXPECT_EQ(std::memcmp(before.texels.data(), after.texels.data(),
+                              before.texels.size() * sizeof(GBufferTexel)),
+                  0);
+    }
+}
+
+TEST_P(Rims, FlippedNormalsOfAWallStillFaceTheViewer) {
+    auto surfels = wall(2, 2, 0.02f, kWhite, 2);
+    std::mt19937 random(7);
+    for (Surfel& s : surfels)
+        if (random() % 20 == 0) s.normal = -s.normal;
+    const CameraView view = look({3, 1.4f, 0}, {0, 2, 0}, 160, 120, 0.9f);
+    const Picture p = picture(surfels, view, true);
+    size_t shown = 0;
+    for (uint32_t at = 0; at < p.texels.size(); ++at) {
+        if (p.empty(at)) continue;
+        ++shown;
+        const glm::vec3 ray = p.ray(at % view.width, at / view.width);
+        EXPECT_LE(glm::dot(texel_normal(p.texels[at]), ray), 1e-3f * glm::length(ray));
+        EXPECT_LT(texel_normal(p.texels[at]).y, -0.7f) << "as the wall's";
+    }
+    EXPECT_GT(shown, 5000u);
+}
+
+TEST_P(Rims, TheSameAsByShaders) {
+    const auto surfels = column_before_wall(0.02f);
+    const CameraView view = look({0.2f, 0, 0}, {0, 1, 0.1f}, 320, 240, 0.7f);
+    GBuffer target;
+    const SurfelCloud cloud(surfels, {{-32, -32, -32}, 64}, 1024);
+    auto loaded = load_cloud(*device, cloud);
+    ASSERT_TRUE(loaded) << loaded.error().line();
+    ASSERT_TRUE(rasterize(*device, (*loaded)->cut, view, target));
+    const size_t pixels = size_t{view.width} * view.height;
+    const auto drawn = target.texels.download_all<GBufferTexel>(pixels);
+    ASSERT_TRUE(turn_rims(*device, view, target));
+    const auto turned = target.texels.download_all<GBufferTexel>(pixels);
+    target.texels.upload_all(drawn);
+    device->use_native_passes(false);
+    ASSERT_TRUE(turn_rims(*device, view, target));
+    const auto by_shaders = target.texels.download_all<GBufferTexel>(pixels);
+    size_t changed = 0, others = 0;
+    for (size_t at = 0; at < pixels; ++at) {
+        changed += std::memcmp(&drawn[at], &turned[at], sizeof(GBufferTexel)) != 0;
+        const float apart = glm::distance(texel_normal(turned[at]), texel_normal(by_shaders[at]));
+        others += !(apart < 2e-3f) || turned[at].albedo != by_shaders[at].albedo;
+    }
+    EXPECT_GT(changed, 20u);
+    EXPECT_LE(others, 2u) << "where the last bits decide";
+}
+
+INSTANTIATE_TEST_SUITE_P(Passes, Rims, ::testing::Bool(), passes_name);
+
+}  // namespace
+}  // namespace lucarne::gi
