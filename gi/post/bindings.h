@@ -14,7 +14,8 @@ const uint kBindPicture = 1u;
 const uint kBindSums = 1u;    // of luminance
 const uint kBindCounts = 1u;  // of pixels by brightness
 const uint kBindMean = 1u;    // of the frames so far
-const uint kBindOther = 2u;   // the other engine's radiance, or its picture
+const uint kBindCoverage = 2u;
+const uint kBindOther = 2u;  // the other engine's radiance, or its picture
 
 // Texture units.
 const uint kUnitGBuffer = 3u;

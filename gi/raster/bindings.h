@@ -14,8 +14,9 @@ const uint kBindIds = 4u;     // surfel ids, a word per pixel
 const uint kBindQueues = 5u;  // queues.h
 const uint kBindTexels = 6u;  // GBufferTexel[]
 const uint kBindCandidates = 7u;
-const uint kBindBlocks = 8u;  // the cut's blocks: 1 for each that is seen, then a list of these
-const uint kBindSums = 9u;    // blend_sums.h
+const uint kBindBlocks = 8u;     // the cut's blocks: 1 for each that is seen, then a list of these
+const uint kBindSums = 9u;       // blend_sums.h
+const uint kBindCoverage = 10u;  // coverage_code.h
 
 // Texture units.
 const uint kUnitKeys = 3u;

@@ -18,6 +18,7 @@ struct GBuffer {
     Buffer ids;                                    ///< uint[width * height], kNoSurfel where empty
     Buffer keys, queues, candidates, seen_blocks;  ///< scratch of rasterize()
     Buffer sums;                                   ///< scratch of blend(), zero between its calls
+    Buffer coverage;                               ///< of find_coverage(): uint[width * height]
     std::vector<native::PlacedBlock> to_blend;     ///< of native passes
 };
 

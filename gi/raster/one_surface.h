@@ -12,11 +12,11 @@
 namespace lucarne::gi::raster {
 #endif
 
-// A disc that is seen from behind at a steeper angle is no rim. The cosine of the angle between its normal
-// and the ray.
+// Rims are seen at a low angle: the largest cosine of the angle between their normal and the ray.
 LUCARNE_CONST float kCosRim = 0.5f;  // 60 degrees
-// A rim looks for the front of its surface so many pixels away, in eight directions.
-LUCARNE_CONST uint kRimSteps = 4u;  // 1, 2, 4 and 8 pixels
+// A rim looks for its surface so many pixels away, in eight directions.
+LUCARNE_CONST uint kRimSteps = 3u;  // 1, 2 and 4 pixels
+LUCARNE_CONST int kRimReach = 4;    // the last of these
 
 // Returns the normal of a texel as its surfels store it: the two sides of a thin wall have opposite ones.
 LUCARNE_FN vec3 stored_normal(GBufferTexel texel) {
@@ -36,13 +36,15 @@ LUCARNE_FN bool is_one_surface(GBufferTexel a, GBufferTexel b, vec3 across, floa
     return dot(na, nb) > kCosCrease && abs(dot(na, across)) <= most && abs(dot(nb, across)) <= most;
 }
 
-// Returns whether a texel may be a rim: a disc seen from behind, at a low angle. `ray`: unit, from the eye.
+// Returns whether a texel is seen at so low an angle that it may be a rim. `ray`: unit, from the eye.
 LUCARNE_FN bool may_be_rim(GBufferTexel texel, vec3 ray) {
-    return (texel.albedo & kTexelFromBehind) != 0u && dot(texel_normal(texel), ray) >= -kCosRim;
+    return dot(texel_normal(texel), ray) >= -kCosRim;
 }
-// Returns a normal turned so that it is at right angles to a ray (unit).
-LUCARNE_FN vec3 turned_across(vec3 normal, vec3 ray) {
-    vec3 turned = normal - dot(normal, ray) * ray;
+// Returns the normal of a rim: that of the side away from the viewer, turned until it stands at right angles
+// to the ray (unit).
+LUCARNE_FN vec3 rim_normal(GBufferTexel texel, vec3 ray) {
+    vec3 normal = texel_normal(texel);
+    vec3 turned = dot(normal, ray) * ray - normal;
     return turned * inversesqrt(max(dot(turned, turned), 1e-12f));
 }
 

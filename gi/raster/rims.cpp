@@ -5,13 +5,24 @@
 #include "gi/raster/uniforms.h"
 
 namespace lucarne::gi {
+namespace {
+
+const Defines kApply = {{"LUCARNE_APPLY", "1"}};
+
+}  // namespace
 
 Result<void> turn_rims(Device& device, const CameraView& view, GBuffer& target) {
     if (device.native_passes()) return native::turn_rims(view, target.texels);
-    LUCARNE_ASSIGN(const Program* program, device.program("gi/raster/rims.comp"));
+    const size_t pixels = size_t{view.width} * view.height;
+    LUCARNE_TRY(device.reserve(target.coverage, pixels * sizeof(uint32_t), "edges"));
+    LUCARNE_ASSIGN(const Program* find, device.program("gi/raster/rims.comp"));
+    LUCARNE_ASSIGN(const Program* apply, device.program("gi/raster/rims.comp", kApply));
     target.texels.bind(raster::kBindTexels);
-    set(*program, "camera", view);
-    program->dispatch(view.width * view.height);
+    target.coverage.bind(raster::kBindCoverage);
+    for (const Program* program : {find, apply}) {
+        set(*program, "camera", view);
+        program->dispatch(static_cast<uint32_t>(pixels));
+    }
     return {};
 }
 

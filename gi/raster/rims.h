@@ -4,11 +4,12 @@
 
 namespace lucarne::gi {
 
-/// Lights the rims of surfaces on their front. Where a surface turns away from the viewer, discs beyond its
-/// outline stick out and are seen from behind; lit on that side, inside a solid body, they would be black.
-/// Such a texel has the front of the same surface beside it (is_one_surface): its normal is turned only as
-/// far as to stand at right angles to its ray. Surfaces that are seen from behind as a whole stay as they
-/// are. Call it after rasterize() or blend(). Errors: the shader's.
+/// Lights the rims of surfaces on the same side as the rest of them. Where a surface turns away from the
+/// viewer, discs beyond its outline stick out and show their other side; lit on that side, inside a solid
+/// body, they would be black. Such a texel is seen at a low angle, and most texels of its surface around it
+/// (is_one_surface) show the other side: its normal is turned to the side away from the viewer, only as far
+/// as to stand at right angles to the ray. It does not matter on which side the scan's normals stand. Call it
+/// after rasterize() or blend(). Errors: out of device memory; the shader's.
 Result<void> turn_rims(Device& device, const CameraView& view, GBuffer& target);
 
 }  // namespace lucarne::gi

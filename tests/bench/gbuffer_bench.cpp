@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "gi/raster/blend.h"
+#include "gi/raster/coverage.h"
+#include "gi/raster/rims.h"
 #include "io/core/random.h"
 #include "tests/bench/bench_run.h"
 #include "tests/gi/engines/surfel_cloud.h"
@@ -163,6 +165,9 @@ Result<void> measure_at(const bench::BenchRun& run, uint64_t points, ImageSize f
                           {}});
         passes.push_back(
             {"blending" + how, [&] { return blend(*device, packed->cut, view, gbuffer); }, {}, {}});
+        passes.push_back({"rims" + how, [&] { return turn_rims(*device, view, gbuffer); }, {}, {}});
+        passes.push_back(
+            {"coverage" + how, [&] { return find_coverage(*device, packed->cut, view, gbuffer); }, {}, {}});
     }
     LUCARNE_TRY(passes[0].run());
     const auto ids = gbuffer.ids.download_all<uint32_t>(size_t{width} * height);

@@ -250,9 +250,9 @@ void add_render(CommandLine& line) {
     command.add("--seconds", options->seconds, "Least time to go on averaging, seconds")
         .range(0.0, 1e6)
         .type_name("S");
-    command.flag("--no-antialiasing", options->aliased,
-                 "Look through the middles of the pixels in all averaged frames, for comparisons with single "
-                 "frames");
+    command.flag(
+        "--no-antialiasing", options->aliased,
+        "Show one surface in each pixel of a frame, that in its middle: hard edges, for comparisons");
     command.add("--json", options->json, "Write figures of the picture as JSON").type_name("FILE");
     command
         .add("--gbuffer", options->gbuffer,

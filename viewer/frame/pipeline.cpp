@@ -10,7 +10,9 @@
 
 #include "gi/gl_frame.h"
 #include "gi/lighting/light_options.h"
+#include "gi/post/share_edges.h"
 #include "gi/raster/blend.h"
+#include "gi/raster/coverage.h"
 #include "gi/raster/rims.h"
 #include "gi/registry.h"
 #include "gi/scene/views.h"
@@ -64,6 +66,7 @@ struct Pipeline::State {
     Result<void> stream(const FrameRequest& request);
     Result<void> build_cuts(bool hold_light);
     Result<DrawingEngines> drawing_engines(const FrameRequest& request);
+    bool softens_edges(const FrameRequest& request) const;
     Result<void> draw(const FrameRequest& request);
     Result<void> draw_with(gi::Engine& by, const FrameRequest& request, gi::Buffer& target);
     Result<void> make_picture(const FrameRequest& request);
@@ -223,6 +226,12 @@ Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& requ
     return DrawingEngines{stand_in.get(), compared};
 }
 
+/// Returns whether pixels at edges show parts of their neighbours: in single pictures and the first of an
+/// average. The others are antialiased by their rays. Sketches of few points are not.
+bool Pipeline::State::softens_edges(const FrameRequest& request) const {
+    return request.antialiased && presentation.accumulated() == 0 && request.most_pixels == 0;
+}
+
 /// Draws the G-buffer and lights it.
 Result<void> Pipeline::State::draw(const FrameRequest& request) {
     times.begin("G-buffer");
@@ -238,6 +247,7 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
     }
     times.begin("edges");
     LUCARNE_TRY(gi::turn_rims(device, camera, gbuffer));
+    if (softens_edges(request)) LUCARNE_TRY(gi::find_coverage(device, cuts.view(), camera, gbuffer, size));
     times.end();
     LUCARNE_TRY(draw_with(*drawing.engine, request, presentation.sample(false)));
     return drawing.compared ? draw_with(*drawing.compared, request, presentation.sample(true))
@@ -295,7 +305,7 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("tone map");
     presentation.follow_exposure(request.exposure_seconds);
     LUCARNE_TRY(presentation.finish(*drawing.engine, drawing.compared, scene, gbuffer,
-                                    {request.accumulate, request.transparent,
+                                    {request.accumulate, request.transparent, softens_edges(request),
                                      static_cast<uint32_t>(kGapsPerPoint * request.most_pixels)}));
     times.end();
     return {};
@@ -393,7 +403,11 @@ const gi::Buffer& Pipeline::picture() const {
     return state_->presentation.picture();
 }
 std::vector<std::vector<glm::vec4>> Pipeline::layers() const {
-    return state_->engine->layers();
+    auto layers = state_->engine->layers();
+    // Those of an average are antialiased by the rays of its frames.
+    if (state_->presentation.soft_edges())
+        for (auto& layer : layers) layer = gi::share_edges(layer, state_->gbuffer);
+    return layers;
 }
 const gi::Buffer& Pipeline::radiance() const {
     return state_->presentation.radiance();
@@ -403,7 +417,7 @@ std::vector<glm::vec4> Pipeline::points_radiance() const {
     const gi::GBuffer& gbuffer = state_->gbuffer;
     const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
     auto radiance = presentation.points_radiance().download_all<glm::vec4>(pixels);
-    if (presentation.averaged()) return radiance;
+    if (presentation.knows_shares()) return radiance;
     const auto texels = gbuffer.texels.download_all<gi::GBufferTexel>(pixels);
     for (size_t i = 0; i < pixels; ++i) radiance[i].w = texels[i].depth > 0 ? 1.0f : 0.0f;
     return radiance;

@@ -43,7 +43,8 @@ struct FrameRequest {
     ImageSize size{1280, 720};
     bool wait = false;         ///< loads complete cuts first: the same pixels on every run
     bool accumulate = false;   ///< averages with earlier frames as long as nothing drawn changes
-    bool antialiased = true;   ///< shifts the rays of averaged frames; false: all of them as in the first
+    bool antialiased = true;   ///< softens edges: by coverage in the first frame, by other rays in the next
+                               ///< ones of an average
     bool transparent = false;  ///< keeps the points' light apart from the background in averages
     /// If over 0: the largest diameter of a point in the picture, pixels. Gaps between points are filled.
     double most_pixels = 0;

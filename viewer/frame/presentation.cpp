@@ -8,6 +8,7 @@
 #include "gi/post/exposure.h"
 #include "gi/post/false_colour.h"
 #include "gi/post/fill_gaps.h"
+#include "gi/post/share_edges.h"
 #include "gi/post/tone_map.h"
 
 namespace lucarne::viewer {
@@ -17,15 +18,17 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     const uint32_t pixels = gbuffer.width * gbuffer.height;
     ++accumulated_;
     averaged_ = averaging.on;
+    edges_ = averaging.edges && accumulated_ == 1;
+    mean_shown_ = averaged_ || edges_;
     points_apart_ = averaging.points_apart || scene.look.backdrop.kind != gi::Backdrop::Kind::scene;
-    if (averaged_) LUCARNE_TRY(add_to_average(own_, gbuffer));
+    if (mean_shown_) LUCARNE_TRY(add_to_average(own_, gbuffer));
     LUCARNE_TRY(expose(engine, scene, gbuffer));
     LUCARNE_TRY(show(engine, scene, pixels, own_));
     if (other) LUCARNE_TRY(compare(*other, scene, gbuffer));
     LUCARNE_TRY(
-        gi::draw_backdrop(device_, gbuffer, radiance(), averaged_, scene.look.backdrop, own_.picture));
+        gi::draw_backdrop(device_, gbuffer, radiance(), mean_shown_, scene.look.backdrop, own_.picture));
     if (averaging.gaps == 0) return {};
-    return gi::fill_gaps(device_, gbuffer, radiance(), averaged_, averaging.gaps, own_.picture);
+    return gi::fill_gaps(device_, gbuffer, radiance(), mean_shown_, averaging.gaps, own_.picture);
 }
 
 Result<void> Presentation::expose(const gi::Engine& engine, const gi::Scene& scene,
@@ -54,6 +57,7 @@ Result<void> Presentation::add_to_average(Images& images, const gi::GBuffer& gbu
     const auto add = [&](bool points_only, gi::Buffer& mean) -> Result<void> {
         const size_t bytes = size_t{gbuffer.width} * gbuffer.height * sizeof(glm::vec4);
         LUCARNE_TRY(device_.reserve(mean, bytes, "the picture's average"));
+        if (edges_) return gi::share_edges(device_, images.sample, gbuffer, points_only, mean);
         return gi::accumulate(device_, images.sample, gbuffer, accumulated_, points_only, mean);
     };
     LUCARNE_TRY(add(false, images.mean));
@@ -62,7 +66,7 @@ Result<void> Presentation::add_to_average(Images& images, const gi::GBuffer& gbu
 
 Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels,
                                 Images& images) {
-    const gi::Buffer& radiance = images.points_radiance(averaged_, points_apart_);
+    const gi::Buffer& radiance = images.points_radiance(mean_shown_, points_apart_);
     const bool unlit = lit_by.info().unlit;
     if (scene.tone_map == gi::ToneMap::false_colour && !unlit)
         return gi::false_colour(device_, radiance, pixels, gi::luminance_range(scene.luminance, exposure_.ev),
@@ -76,10 +80,10 @@ Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& sce
                                    const gi::GBuffer& gbuffer) {
     using Show = gi::Comparison::Show;
     const uint32_t pixels = gbuffer.width * gbuffer.height;
-    if (averaged_) LUCARNE_TRY(add_to_average(other_, gbuffer));
+    if (mean_shown_) LUCARNE_TRY(add_to_average(other_, gbuffer));
     const gi::Comparison& how = *scene.comparison;
     if (how.show != Show::split)
-        return gi::difference(device_, radiance(), other_.radiance(averaged_), pixels,
+        return gi::difference(device_, radiance(), other_.radiance(mean_shown_), pixels,
                               how.show == Show::absolute_difference, exposure_.ev, how.range, own_.picture);
     LUCARNE_TRY(show(other, scene, pixels, other_));
     return gi::split(device_, other_.picture, gbuffer.width, gbuffer.height, how.border, own_.picture);

@@ -25,13 +25,20 @@ class Presentation {
     /// Whether the last picture was an average.
     bool averaged() const { return averaged_; }
 
+    /// Whether pixels at edges of the last frame show parts of their neighbours.
+    bool soft_edges() const { return edges_; }
+    /// Whether w of radiance() and points_radiance() is the share of each pixel that shows points.
+    bool knows_shares() const { return mean_shown_; }
+
     /// The buffer to which the picture's engine (or the compared one) writes its radiance.
     gi::Buffer& sample(bool compared) { return compared ? other_.sample : own_.sample; }
 
     struct Averaging {
         bool on = false;            ///< show the mean of this frame and the frames since restart()
         bool points_apart = false;  ///< average the points' light apart from the background
-        uint32_t gaps = 0;          ///< if over 0: gaps up to twice as many pixels wide are filled
+        bool edges =
+            false;  ///< pixels at edges show parts of their neighbours (gi::find_coverage) in the first frame
+        uint32_t gaps = 0;  ///< if over 0: gaps up to twice as many pixels wide are filled
     };
     /// Time in which automatic exposure follows the pictures by 63 %; 0: at once.
     void follow_exposure(double seconds) { exposure_seconds_ = seconds; }
@@ -45,9 +52,9 @@ class Presentation {
 
     /// The last picture's radiance, vec4 a pixel, row 0 on top. In an average w is the share of the frames
     /// that show a point in the pixel.
-    const gi::Buffer& radiance() const { return averaged_ ? own_.mean : own_.sample; }
+    const gi::Buffer& radiance() const { return mean_shown_ ? own_.mean : own_.sample; }
     /// The same without the background, if the points' light was averaged apart; otherwise radiance().
-    const gi::Buffer& points_radiance() const { return own_.points_radiance(averaged_, points_apart_); }
+    const gi::Buffer& points_radiance() const { return own_.points_radiance(mean_shown_, points_apart_); }
     /// The last picture, RGBA8 a pixel.
     const gi::Buffer& picture() const { return own_.picture; }
     /// The exposure of the last picture in stops.
@@ -72,6 +79,8 @@ class Presentation {
     Images own_, other_;  ///< of the picture's engine and of the compared engine
     uint32_t accumulated_ = 0;
     bool averaged_ = false, points_apart_ = false;
+    bool edges_ = false;       ///< of the last frame
+    bool mean_shown_ = false;  ///< the last picture's radiance is in Images::mean
     gi::Exposure exposure_;
     double exposure_seconds_ = 0;
     std::optional<std::chrono::steady_clock::time_point> exposed_;  ///< when exposure was last automatic

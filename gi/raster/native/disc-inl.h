@@ -124,8 +124,8 @@ HWY_INLINE Mask turn_discs(const DiscView& view, U normals, U flags, Discs& disc
 }
 
 /// Returns the lines at which discs end, see edge_of_code(). `b`, `normals`, `d`: words of the surfels;
-/// `size`: of their cube.
-HWY_INLINE V3 disc_edges(const DiscView& view, U b, U normals, U d, float size) {
+/// `size`: of their cubes.
+HWY_INLINE V3 disc_edges(const DiscView& view, U b, U normals, U d, F size) {
     const F zero = hn::Zero(Floats()), one = set(1.0f);
     const Mask lined = hn::RebindMask(Floats(), hn::TestBit(d, word(kSurfelHasEdge)));
     if (view.size.pixels > 0 || hn::AllFalse(Floats(), lined)) return {zero, zero, zero};
@@ -146,11 +146,39 @@ HWY_INLINE V3 disc_edges(const DiscView& view, U b, U normals, U d, float size) 
     toward = choose(hn::And(hn::Ge(sizes.x, sizes.y), hn::Ge(sizes.x, sizes.z)), {rest(n.y, n.z, n.x), u, v},
                     toward);
     const auto area = hn::BitCast(Ints(), bits(hn::ShiftRight<16>(b), 255u));
-    const F root = mul(set(size), hn::GatherIndex(Floats(), area_roots().data(), area));
+    const F root = mul(size, hn::GatherIndex(Floats(), area_roots().data(), area));
     const F distance = mul(over(to_float(bits(code, kMostEdgeDistance)), set(kEdgeDistanceSteps)), root);
     const F scale = over(over(one, hn::Sqrt(dot(toward, toward))), distance);
     return choose(hn::And(lined, hn::Gt(distance, zero)), to_view(view, scaled(toward, scale)),
                   {zero, zero, zero});
+}
+
+/// Surfels by their ids, one a lane.
+struct FoundSurfels {
+    Packed packed;
+    V3 origin;  ///< of their cubes
+    F size;     ///< of their cubes, m
+    F radius;   ///< m
+};
+HWY_INLINE FoundSurfels find_surfels(const CutMemory& cut, U id) {
+    const auto words = [](const uint32_t* from, hn::Vec<Ints> index) {
+        return hn::GatherIndex(Words(), from, index);
+    };
+    const auto floats = [](const float* from, hn::Vec<Ints> index) {
+        return hn::GatherIndex(Floats(), from, index);
+    };
+    const auto* blocks = reinterpret_cast<const uint32_t*>(cut.blocks);
+    const auto* items = reinterpret_cast<const float*>(cut.items);
+    const auto* pool = reinterpret_cast<const uint32_t*>(cut.pool);
+    const auto block = hn::BitCast(Ints(), hn::ShiftLeft<2>(hn::ShiftRight<8>(id)));
+    const U in_block = hn::And(id, word(kBlockSurfels - 1));
+    const U radius = hn::Add(words(cut.first_radius, hn::BitCast(Ints(), hn::ShiftRight<8>(id))), in_block);
+    const auto cube = hn::BitCast(Ints(), hn::ShiftLeft<4>(words(blocks, block)));
+    const auto four = hn::BitCast(Ints(), hn::ShiftLeft<2>(hn::Add(words(blocks + 1, block), in_block)));
+    return {{words(pool, four), words(pool + 1, four), words(pool + 2, four), words(pool + 3, four)},
+            {floats(items, cube), floats(items + 1, cube), floats(items + 2, cube)},
+            floats(items + 3, cube),
+            floats(cut.radii, hn::BitCast(Ints(), radius))};
 }
 
 static_assert(HWY_MAX_BYTES / 4 <= HostSurfels::kPadding);
@@ -293,7 +321,7 @@ HWY_INLINE Mask load_discs(const BlockDiscs& from, size_t at, const DiscView& vi
     discs.radius = hn::LoadU(df, from.radius + at);
     const U c = hn::LoadU(Words(), from.c + at), d = hn::LoadU(Words(), from.d + at);
     const Mask seen = turn_discs(view, c, d, discs);
-    discs.edge = disc_edges(view, hn::LoadU(Words(), from.b + at), c, d, from.size);
+    discs.edge = disc_edges(view, hn::LoadU(Words(), from.b + at), c, d, set(from.size));
     return hn::And(seen, hn::FirstN(df, from.count - at));
 }
 

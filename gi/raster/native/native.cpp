@@ -6,7 +6,9 @@
 #include <hwy/targets.h>
 
 #include "gi/raster/native/blending.h"
+#include "gi/raster/native/coverage.h"
 #include "gi/raster/native/visibility.h"
+#include "io/core/parallel.h"
 
 namespace lucarne::gi::native {
 
@@ -56,6 +58,24 @@ Result<void> blend(const DeviceCut& cut, const DiscView& view, const Buffer& tex
               [&](const PixelRect& tile, std::span<const PlacedBlock* const> blocks) {
                   draw_blending(memory, view, tile, blocks, out);
               });
+    return {};
+}
+
+Result<void> find_coverage(const DeviceCut& cut, const CameraView& camera, const DiscView& view,
+                           const Buffer& texels, const Buffer& ids, const Buffer& coverage) {
+    LUCARNE_ASSIGN(const MappedBuffer pool, cut.pool().map());
+    LUCARNE_ASSIGN(const MappedBuffer texel_memory, texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer id_memory, ids.map());
+    LUCARNE_ASSIGN(const MappedBuffer coverage_memory, coverage.map());
+    const CutMemory memory = memory_of(cut, pool.as<const PackedSurfel>());
+    const auto* seen = texel_memory.as<const GBufferTexel>().data();
+    const auto* owners = id_memory.as<const uint32_t>().data();
+    auto* out = coverage_memory.as<uint32_t>().data();
+    constexpr size_t kRows = 16;  // of a task
+    parallel_ranges(view.height, kRows, [&](size_t first, size_t last) {
+        find_coverage(memory,
+                      {camera, view, seen, owners, out, static_cast<int>(first), static_cast<int>(last)});
+    });
     return {};
 }
 

@@ -19,6 +19,10 @@ Result<void> rasterize(const DeviceCut& cut, const DiscView& view, const Buffer&
 Result<void> blend(const DeviceCut& cut, const DiscView& view, const Buffer& texels,
                    std::span<const PlacedBlock> to_blend);
 
+/// Finds the coverage of a picture's pixels as gi::find_coverage() does.
+Result<void> find_coverage(const DeviceCut& cut, const CameraView& camera, const DiscView& view,
+                           const Buffer& texels, const Buffer& ids, const Buffer& coverage);
+
 /// Runs the kernels with the instructions that are at hand, from the slowest set to the fastest: `set` counts
 /// them. Returns false if there is no such set. For tests; `set` below 0 returns to the fastest.
 bool use_instruction_set(int set);

@@ -190,39 +190,19 @@ HWY_INLINE U half_bits(F v) {
     return hn::IfThenElse(is_large, word(0x7c00u), hn::IfThenElse(is_tiny, tiny, usual));
 }
 
-HWY_INLINE F gather(const float* from, hn::Vec<Ints> index) {
-    return hn::GatherIndex(Floats(), from, index);
-}
-HWY_INLINE U gather(const uint32_t* from, hn::Vec<Ints> index) {
-    return hn::GatherIndex(Words(), from, index);
-}
-
 /// Writes the texels of a row of pixels, `count` of them from (x, y) on.
 void resolve_row(const CutMemory& cut, const DiscView& view, int x, int y, int count, const uint32_t* ids,
                  GBufferTexel* texels) {
     const auto lanes = static_cast<int>(hn::Lanes(Floats()));
     const bool flat = orthographic(view);
     const F tangent_y = set(row_tangent(view, y)), zero = hn::Zero(Floats()), one = set(1.0f);
-    const auto* blocks = reinterpret_cast<const uint32_t*>(cut.blocks);
-    const auto* items = reinterpret_cast<const float*>(cut.items);
-    const auto* pool = reinterpret_cast<const uint32_t*>(cut.pool);
     for (int at = 0; at < count; at += lanes) {
         const U id = hn::LoadU(Words(), ids + at);
         const auto taken = hn::Ne(id, word(kNoSurfel));
-        const U place = hn::IfThenElseZero(taken, id);
-        const auto block = hn::BitCast(Ints(), hn::ShiftLeft<2>(hn::ShiftRight<8>(place)));
-        const U in_block = hn::And(place, word(kBlockSurfels - 1));
-        const U radius =
-            hn::Add(gather(cut.first_radius, hn::BitCast(Ints(), hn::ShiftRight<8>(place))), in_block);
-        const U item = hn::ShiftLeft<4>(gather(blocks, block));
-        const U surfel = hn::Add(gather(blocks + 1, block), in_block);
-        const auto four = hn::BitCast(Ints(), hn::ShiftLeft<2>(surfel)), cube = hn::BitCast(Ints(), item);
-        const Packed packed{gather(pool, four), gather(pool + 1, four), gather(pool + 2, four),
-                            gather(pool + 3, four)};
-        const V3 origin{gather(items, cube), gather(items + 1, cube), gather(items + 2, cube)};
+        const FoundSurfels found = find_surfels(cut, hn::IfThenElseZero(taken, id));
+        const Packed& packed = found.packed;
         Discs discs;
-        place_discs(view, packed, origin, gather(items + 3, cube),
-                    gather(cut.radii, hn::BitCast(Ints(), radius)), discs);
+        place_discs(view, packed, found.origin, found.size, found.radius, discs);
         turn_discs(view, packed.c, packed.d, discs);
         const F tangent_x = column_tangents(Floats(), view, x + at);
         const V3 ray{flat ? zero : tangent_x, flat ? zero : tangent_y, one};

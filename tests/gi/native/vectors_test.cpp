@@ -222,8 +222,8 @@ TEST(Disc, LinesOfVectorsAreTheSame) {
         const vec3 expected = d & kSurfelHasEdge ? edge_of_code(surfel_edge_code(c, d), decode_octahedral(c),
                                                                 std::sqrt(surfel_own_area(b, 4.0f)))
                                                  : vec3(0.0f);
-        const auto found =
-            vectors::disc_edges(view, vectors::word(b), vectors::word(c), vectors::word(d), 4.0f);
+        const auto found = vectors::disc_edges(view, vectors::word(b), vectors::word(c), vectors::word(d),
+                                               vectors::set(4.0f));
         const auto lane = [](vectors::F v) { return vectors::hn::GetLane(v); };
         const vec3 edge(lane(found.x), lane(found.y), lane(found.z));
         EXPECT_LE(length(edge - expected), 2e-6f * length(expected)) << i;
