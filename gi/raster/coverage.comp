@@ -23,7 +23,7 @@ bool in_picture(ivec2 pixel) {
 bool differ(GBufferTexel a, ivec2 pixel_a, GBufferTexel b, ivec2 pixel_b) {
     if (a.depth == 0.0 || b.depth == 0.0) return a.depth != b.depth;
     vec3 across = view_offset(camera, vec2(pixel_b) + 0.5, b.depth) - view_offset(camera, vec2(pixel_a) + 0.5, a.depth);
-    return !is_one_surface(a, b, across, pixel_height(camera, max(a.depth, b.depth)));
+    return !is_one_surface(a, stored_normal(a), b, across, pixel_height(camera, max(a.depth, b.depth)));
 }
 
 // The samples of a pixel: the order of the nearest disc, and which of the nine pixels shows its surface.

@@ -25,15 +25,15 @@ LUCARNE_FN vec3 stored_normal(GBufferTexel texel) {
 }
 
 // Returns whether two texels show one smooth surface: no crease lies between their normals, and each point
-// lies in the slab of blending about the other's plane. `across` leads from one point to the other, m.
-// `reach`: by which a surface may bend away between the two pixels, m.
-LUCARNE_FN bool is_one_surface(GBufferTexel a, GBufferTexel b, vec3 across, float reach) {
+// lies in the slab of blending about the other's plane. `normal`: the stored one of a; `across` leads from
+// one point to the other, m; `reach`: by which a surface may bend away between the two pixels, m.
+LUCARNE_FN bool is_one_surface(GBufferTexel a, vec3 normal, GBufferTexel b, vec3 across, float reach) {
     if (((a.material ^ b.material) & 0xffffu) != 0u || ((a.albedo ^ b.albedo) & kSurfelHasNormal) != 0u)
         return false;
-    vec3 na = stored_normal(a);
-    vec3 nb = stored_normal(b);
     float most = kSlab * max(texel_radius(a), texel_radius(b)) + reach;
-    return dot(na, nb) > kCosCrease && abs(dot(na, across)) <= most && abs(dot(nb, across)) <= most;
+    if (!(abs(dot(normal, across)) <= most)) return false;
+    vec3 other = stored_normal(b);
+    return dot(normal, other) > kCosCrease && abs(dot(other, across)) <= most;
 }
 
 // Returns whether a texel is seen at so low an angle that it may be a rim. `ray`: unit, from the eye.

@@ -12,6 +12,7 @@ uniform CameraView camera;
 // Returns whether most texels of the surface around a texel show its other side.
 bool is_rim(ivec2 here, GBufferTexel texel) {
     vec3 place = view_offset(camera, vec2(here) + 0.5, texel.depth);
+    vec3 normal = stored_normal(texel);
     float pixel = pixel_height(camera, texel.depth);
     int others = 0;  // more than those of the same side
     for (uint i = 0u; i < 8u * kRimSteps; ++i) {
@@ -22,7 +23,7 @@ bool is_rim(ivec2 here, GBufferTexel texel) {
         GBufferTexel other = texels[uint(there.y) * camera.width + uint(there.x)];
         if (other.depth == 0.0) continue;
         vec3 across = view_offset(camera, vec2(there) + 0.5, other.depth) - place;
-        if (!is_one_surface(texel, other, across, float(steps) * pixel)) continue;
+        if (!is_one_surface(texel, normal, other, across, float(steps) * pixel)) continue;
         others += ((texel.albedo ^ other.albedo) & kTexelFromBehind) != 0u ? 1 : -1;
     }
     return others > 0;

@@ -51,35 +51,64 @@ struct Sides {
         : front(view.width, view.height), behind(view.width, view.height) {
         parallel_ranges(view.height, kRowsPerTask, [&](size_t first, size_t last) {
             for (size_t y = first; y < last; ++y)
-                for (size_t x = 0; x < view.width; ++x) {
-                    const GBufferTexel& texel = texels[y * view.width + x];
-                    if (texel.depth == 0 || !(texel.albedo & kSurfelHasNormal)) continue;
-                    PixelBits& bits = texel.albedo & kTexelFromBehind ? behind : front;
-                    bits.word(y, x / 64) |= uint64_t{1} << (x % 64);
+                for (size_t i = 0; i < front.words(); ++i) {
+                    const GBufferTexel* from = texels + y * view.width + 64 * i;
+                    const size_t count = std::min<size_t>(64, view.width - 64 * i);
+                    uint64_t known = 0, turned = 0;
+                    for (size_t k = 0; k < count; ++k) {
+                        const uint64_t shown = from[k].depth != 0 && (from[k].albedo & kSurfelHasNormal);
+                        known |= shown << k;
+                        turned |= uint64_t{from[k].albedo / kTexelFromBehind} << k;
+                    }
+                    front.word(y, i) = known & ~turned;
+                    behind.word(y, i) = known & turned;
                 }
         });
     }
 };
 
+/// The points that the pixels of a view show, without a division for each.
+class PixelPoints {
+ public:
+    explicit PixelPoints(const CameraView& view)
+        : parallel_(is_parallel(view)),
+          forward_(xyz_of(view.forward)),
+          first_(view_across(view, glm::vec2(0.5f))),
+          right_(view_across(view, glm::vec2(1.5f, 0.5f)) - first_),
+          down_(view_across(view, glm::vec2(0.5f, 1.5f)) - first_) {}
+    /// view_ray(), unit.
+    glm::vec3 ray(int x, int y) const { return parallel_ ? forward_ : glm::normalize(at(x, y, 1)); }
+    /// Relative to the view's origin, as view_offset().
+    glm::vec3 at(int x, int y, float depth) const {
+        const glm::vec3 across = first_ + static_cast<float>(x) * right_ + static_cast<float>(y) * down_;
+        return depth * forward_ + (parallel_ ? across : depth * across);
+    }
+
+ private:
+    bool parallel_;
+    glm::vec3 forward_, first_, right_, down_;
+};
+
 /// Returns whether most texels of the surface around a texel show its other side. See rims.comp.
-bool is_rim(const CameraView& view, const GBufferTexel* texels, int x, int y) {
+bool is_rim(const CameraView& view, const PixelPoints& points, const GBufferTexel* texels, int x, int y) {
     const auto width = static_cast<int>(view.width), height = static_cast<int>(view.height);
     const GBufferTexel& texel = texels[y * width + x];
-    const glm::vec3 place = view_offset(view, glm::vec2(x, y) + 0.5f, texel.depth);
+    const glm::vec3 place = points.at(x, y, texel.depth), normal = raster::stored_normal(texel);
     const float pixel = pixel_height(view, texel.depth);
-    int others = 0;
+    int others = 0, left = 8 * static_cast<int>(raster::kRimSteps);
     for (int steps = 1; steps <= raster::kRimReach; steps *= 2)
         for (int dy = -steps; dy <= steps; dy += steps)
             for (int dx = -steps; dx <= steps; dx += steps) {
+                if (dx == 0 && dy == 0) continue;
+                if (others > left || others + left <= 0) return others > 0;  // nothing can change it
+                --left;
                 const int column = x + dx, row = y + dy;
                 if (column < 0 || row < 0 || column >= width || row >= height) continue;
-                if (dx == 0 && dy == 0) continue;
                 const GBufferTexel& other = texels[row * width + column];
                 if (other.depth == 0) continue;
-                const glm::vec3 across =
-                    view_offset(view, glm::vec2(column, row) + 0.5f, other.depth) - place;
-                if (!raster::is_one_surface(texel, other, across, static_cast<float>(steps) * pixel))
-                    continue;
+                const glm::vec3 across = points.at(column, row, other.depth) - place;
+                const float reach = static_cast<float>(steps) * pixel;
+                if (!raster::is_one_surface(texel, normal, other, across, reach)) continue;
                 others += (texel.albedo ^ other.albedo) & kTexelFromBehind ? 1 : -1;
             }
     return others > 0;
@@ -94,6 +123,7 @@ struct TurnedTexel {
 /// Finds the rims of some rows.
 void find_rims(const CameraView& view, const GBufferTexel* texels, Sides& sides, size_t first, size_t last,
                std::vector<TurnedTexel>& found) {
+    const PixelPoints points(view);
     for (size_t y = first; y < last; ++y)
         for (size_t i = 0; i < sides.front.words(); ++i) {
             const uint64_t front = sides.front.word(y, i), behind = sides.behind.word(y, i);
@@ -101,11 +131,11 @@ void find_rims(const CameraView& view, const GBufferTexel* texels, Sides& sides,
             if (front) left |= front & sides.behind.near(y, i);
             if (behind) left |= behind & sides.front.near(y, i);
             for (; left; left &= left - 1) {
-                const size_t x = 64 * i + static_cast<size_t>(std::countr_zero(left));
-                const size_t at = y * view.width + x;
-                const glm::vec3 ray = glm::normalize(view_ray(view, glm::vec2(x, y) + 0.5f));
-                if (!raster::may_be_rim(texels[at], ray)) continue;
-                if (!is_rim(view, texels, static_cast<int>(x), static_cast<int>(y))) continue;
+                const size_t column = 64 * i + static_cast<size_t>(std::countr_zero(left));
+                const size_t at = y * view.width + column;
+                const int x = static_cast<int>(column), row = static_cast<int>(y);
+                const glm::vec3 ray = points.ray(x, row);
+                if (!raster::may_be_rim(texels[at], ray) || !is_rim(view, points, texels, x, row)) continue;
                 found.push_back({at, encode_octahedral(raster::rim_normal(texels[at], ray))});
             }
         }
