@@ -52,7 +52,7 @@ SeenFrame seen_frame(const Pipeline& pipeline) {
     const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
     return {pipeline.camera(), pipeline.local_origin(), pipeline.source().header().metres_per_unit,
             gbuffer.texels.download_all<gi::GBufferTexel>(pixels),
-            pipeline.radiance().download_all<glm::vec4>(pixels)};
+            pipeline.surface_radiance().download_all<glm::vec4>(pixels)};
 }
 
 Flicker flicker_between(const SeenFrame& before, const SeenFrame& now) {

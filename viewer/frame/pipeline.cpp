@@ -226,10 +226,13 @@ Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& requ
     return DrawingEngines{stand_in.get(), compared};
 }
 
-/// Returns whether pixels at edges show parts of their neighbours: in single pictures and the first of an
-/// average. The others are antialiased by their rays. Sketches of few points are not.
+/// Returns whether pixels at edges show parts of their neighbours: in single pictures and the first frame of
+/// an average; the others are antialiased by their rays. Not in sketches of few points. Nor in averages of
+/// engines with further pictures, which average all frames as they are.
 bool Pipeline::State::softens_edges(const FrameRequest& request) const {
-    return request.antialiased && presentation.accumulated() == 0 && request.most_pixels == 0;
+    const bool averages_alone = request.accumulate && !drawing.engine->info().layers.empty();
+    return request.antialiased && presentation.accumulated() == 0 && request.most_pixels == 0 &&
+           !averages_alone;
 }
 
 /// Draws the G-buffer and lights it.
@@ -411,6 +414,9 @@ std::vector<std::vector<glm::vec4>> Pipeline::layers() const {
 }
 const gi::Buffer& Pipeline::radiance() const {
     return state_->presentation.radiance();
+}
+const gi::Buffer& Pipeline::surface_radiance() const {
+    return state_->presentation.sample(false);
 }
 std::vector<glm::vec4> Pipeline::points_radiance() const {
     const Presentation& presentation = state_->presentation;

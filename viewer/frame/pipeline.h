@@ -147,6 +147,8 @@ class Pipeline {
     /// The last frame's radiance (vec4 a pixel, linear, W/(sr m^2)) and picture (RGBA8, tone-mapped sRGB),
     /// row 0 on top.
     const gi::Buffer& radiance() const;
+    /// The radiance of the last frame alone, each pixel that of the surface in the G-buffer.
+    const gi::Buffer& surface_radiance() const;
     const gi::Buffer& picture() const;
     /// The radiance without the background, in pixels that show a point; with the share of the pixel that
     /// shows points in w. Averages need FrameRequest::transparent for that.
