@@ -21,10 +21,12 @@ inline std::string missing_for_ranks() {
 }
 
 /// The command that starts `count` copies of a program. Copies may be more than processors, and containers
-/// often forbid what OpenMPI does to copy between processes.
+/// often forbid what OpenMPI does to copy between processes. If one is killed, mpirun kills the others, which
+/// get five seconds instead of one to remove their files, because the machine may be busy.
 inline std::string mpirun(int count) {
     return "OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_plm_rsh_agent=/bin/false "
-           "OMPI_MCA_mpi_yield_when_idle=1 mpirun --allow-run-as-root --oversubscribe --bind-to none -n " +
+           "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_odls_base_sigkill_timeout=5 mpirun --allow-run-as-root "
+           "--oversubscribe --bind-to none -n " +
            std::to_string(count) + " ";
 }
 

@@ -24,7 +24,7 @@ class Slurm {
     explicit Slurm(const test::TemporaryFolder& folder) : folder_(folder) {
         const std::string host = words("hostname -s"), user = words("id -un"), conf = folder / "slurm.conf";
         std::random_device random;
-        const int port = 20000 + static_cast<int>(random() % 20000);
+        const int port = 20000 + static_cast<int>(random() % 12000);  // below those that systems give out
         std::string key;
         for (int i = 0; i < 1024; ++i) key += static_cast<char>(random());
         std::ofstream(folder / "key", std::ios::binary) << key;
