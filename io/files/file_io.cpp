@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "io/core/interrupt.h"
 #include "io/files/handle_pool.h"
 
 namespace lucarne::file_io {
