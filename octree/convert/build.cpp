@@ -203,6 +203,49 @@ Result<double> build_together(ChunkStore& store, const RecordLoader& loader, con
                       *cache.output, folder);
 }
 
+/// Builds all chunks into the cache. Returns the CPU time of compression.
+Result<double> build_alone(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
+                           const MemoryPlan& memory, bool keep, const std::filesystem::path& folder,
+                           CacheWriter& cache, Steps& steps, BuildListener* listener) {
+    if (listener) listener->building(loader.schema());
+    LUCARNE_ASSIGN(Assembler assembler, Assembler::create(cache, loader, limits, folder, listener));
+    LUCARNE_TRY(build_chunks(store, loader, limits, memory, keep, assembler, steps, nullptr));
+    return assembler.encode_seconds();
+}
+
+/// Returns normals and areas of all points, those of an earlier run if they are whole.
+Result<SurfaceStore> surface_of(Workspace& work, ChunkStore& store, const std::vector<io::ScanInfo>& scans,
+                                const SurfaceStore::Settings& settings) {
+    return resumable(
+        work, settings.ranks, "normals",
+        [&](const auto& record) { return kept_surface(work, store, record); },
+        [&] { return find_surface(work, store, scans, settings); });
+}
+
+/// Adds to a cache what is computed from its nodes, and writes its directory and `header`.
+Result<void> complete(CacheWriter& writer, SourceHeader header, const BuildOptions& options,
+                      BuildReport& report) {
+    LUCARNE_ASSIGN(header.station_colours,
+                   timed(report, "colours", [&] { return survey_colours(writer, header); }));
+    if (options.fill) {
+        LUCARNE_ASSIGN(header.filling,
+                       timed(report, "holes", [&] { return fill_holes(writer, header, options.memory); }));
+        report.filled = header.filling->points;
+    }
+    return timed(report, "write", [&] { return writer.finish(header); });
+}
+
+/// Warns of points without normals where those of the inputs are kept. Errors: no point has one.
+Result<void> check_kept_normals(const BuildOptions& options, const ScanFacts& facts) {
+    if (facts.without_normal == 0) return {};
+    if (facts.without_normal == facts.points)
+        return bad_arguments(options.inputs[0]->info().path, "has no normals to keep",
+                             "use --normals estimate");
+    log::warn("{} of {} points have no normal to keep, and get no light; --normals auto estimates theirs",
+              facts.without_normal, facts.points);
+    return {};
+}
+
 uint64_t points_of(const ChunkStore& store) {
     uint64_t points = 0;
     for (size_t chunk = store.own().first; chunk < store.own().end; ++chunk)
@@ -256,13 +299,12 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
                            return scan_and_count(inputs, own, memory, options, counted);
                        });
                    }));
+    report.points = facts.points;
+    report.dropped = facts.dropped;
+    report.inputs = facts.inputs;
+    report.estimated_stations = facts.stations.size();
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs, facts.without_normal == 0));
-    if (normals && !*normals && facts.without_normal == facts.points)
-        return bad_arguments(options.inputs[0]->info().path, "has no normals to keep",
-                             "use --normals estimate");
-    if (normals && !*normals && facts.without_normal > 0)
-        log::warn("{} of {} points have no normal to keep, and get no light; --normals auto estimates theirs",
-                  facts.without_normal, facts.points);
+    if (normals && !*normals) LUCARNE_TRY(check_kept_normals(options, facts));
     const NodeLimits limits(inputs.schema().stride + added_bytes(normals));
     SourceHeader bare = header_of(inputs, facts, inputs.schema());
     bare.options = options.read_options;
@@ -285,21 +327,13 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
     std::optional<SurfaceStore> surface;
     if (normals) {
         Steps steps(options.listener, "normals", points_of(store));
-        const SurfaceStore::Settings settings{*normals,
-                                              options.neighbours,
-                                              options.neighbour_search,
-                                              threads,
-                                              options.memory,
-                                              facts.stations,
-                                              [&](uint64_t points) { return steps.add(points); },
-                                              ranks,
-                                              folder};
-        LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
-                           return resumable(
-                               work, ranks, "normals",
-                               [&](const auto& record) { return kept_surface(work, store, record); },
-                               [&] { return find_surface(work, store, bare.scans, settings); });
-                       }));
+        LUCARNE_ASSIGN(
+            surface, timed(report, "normals", [&] {
+                return surface_of(
+                    work, store, bare.scans,
+                    {*normals, options.neighbours, options.neighbour_search, threads, options.memory,
+                     facts.stations, [&](uint64_t points) { return steps.add(points); }, ranks, folder});
+            }));
     }
     const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false));
     std::optional<CacheWriter> alone;
@@ -312,14 +346,11 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
         if (ranks) {
             LUCARNE_ASSIGN(encoding, build_together(store, loader, limits, memory, work.resumable(), folder,
                                                     *held.cache, steps, *ranks));
-            return {};
+        } else {
+            LUCARNE_ASSIGN(encoding, build_alone(store, loader, limits, memory, work.resumable(), folder,
+                                                 *alone, steps, options.listener));
         }
-        if (options.listener) options.listener->building(loader.schema());
-        LUCARNE_ASSIGN(Assembler assembler,
-                       Assembler::create(*alone, loader, limits, folder, options.listener));
-        auto built = build_chunks(store, loader, limits, memory, work.resumable(), assembler, steps, nullptr);
-        encoding = assembler.encode_seconds();
-        return built;
+        return {};
     }));
     report.stages.back().cpu_seconds -= encoding;
     report.stages.push_back({"encode", 0, encoding});
@@ -330,21 +361,9 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
         if (ranks->rank() > 0) return report;  // rank 0 does what is left
     }
     CacheWriter& writer = ranks ? *held.cache->writer : *alone;
-    SourceHeader header = bare;
-    header.schema = loader.schema();
-    LUCARNE_ASSIGN(header.station_colours,
-                   timed(report, "colours", [&] { return survey_colours(writer, header); }));
-    if (options.fill) {
-        LUCARNE_ASSIGN(header.filling,
-                       timed(report, "holes", [&] { return fill_holes(writer, header, options.memory); }));
-        report.filled = header.filling->points;
-    }
-    LUCARNE_TRY(timed(report, "write", [&] { return writer.finish(header); }));
-    report.points = facts.points;
-    report.dropped = facts.dropped;
+    bare.schema = loader.schema();
+    LUCARNE_TRY(complete(writer, std::move(bare), options, report));
     report.estimated_normals = normals.value_or(false) ? facts.without_normal : 0;
-    report.inputs = facts.inputs;
-    report.estimated_stations = facts.stations.size();
     report.chunks = store.chunks().size();
     report.nodes = writer.nodes();
     report.bytes = writer.bytes();

@@ -66,6 +66,7 @@ struct Pipeline::State {
     Result<void> stream(const FrameRequest& request);
     Result<void> build_cuts(bool hold_light);
     Result<DrawingEngines> drawing_engines(const FrameRequest& request);
+    Result<void> make_engines_anew();
     bool softens_edges(const FrameRequest& request) const;
     Result<void> draw(const FrameRequest& request);
     Result<void> draw_with(gi::Engine& by, const FrameRequest& request, gi::Buffer& target);
@@ -226,6 +227,17 @@ Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& requ
     return DrawingEngines{stand_in.get(), compared};
 }
 
+/// Frees what engines and G-buffer hold for more points than there is room for.
+Result<void> Pipeline::State::make_engines_anew() {
+    drawing = {};
+    gbuffer = {};
+    for (std::unique_ptr<gi::Engine>* one : {&engine, &other, &stand_in, &colours}) {
+        if (!*one) continue;
+        LUCARNE_ASSIGN(*one, gi::make_engine((*one)->info().name));
+    }
+    return {};
+}
+
 /// Returns whether pixels at edges show parts of their neighbours: in single pictures and the first frame of
 /// an average; the others are antialiased by their rays. Not in sketches of few points. Nor in averages of
 /// engines with further pictures, which average all frames as they are.
@@ -258,8 +270,6 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
 }
 
 Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& request, gi::Buffer& target) {
-    const size_t pixels = size_t{request.size.width} * request.size.height;
-    LUCARNE_TRY(device.reserve(target, pixels * sizeof(glm::vec4), "the picture's radiance"));
     std::vector<gi::Light> lights;
     for (const gi::SceneLight& light : scene.lights) lights.push_back(gi::device_light(light, local));
     const auto& header = source->header();
@@ -303,13 +313,15 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     if (!request.accumulate || !presentation.averaged() || other_sizes || other_sides) presentation.restart();
     const bool shifted = request.accumulate && request.antialiased;
     gi::shift_rays(camera, shifted ? presentation.accumulated() : 0);
+    const Presentation::Averaging averaging{request.accumulate, request.transparent, softens_edges(request),
+                                            static_cast<uint32_t>(kGapsPerPoint * request.most_pixels)};
+    LUCARNE_TRY(presentation.reserve(size_t{request.size.width} * request.size.height, scene, averaging,
+                                     drawing.compared != nullptr));
     LUCARNE_TRY(draw(request));
     if (stopped(request)) return {};
     times.begin("tone map");
     presentation.follow_exposure(request.exposure_seconds);
-    LUCARNE_TRY(presentation.finish(*drawing.engine, drawing.compared, scene, gbuffer,
-                                    {request.accumulate, request.transparent, softens_edges(request),
-                                     static_cast<uint32_t>(kGapsPerPoint * request.most_pixels)}));
+    LUCARNE_TRY(presentation.finish(*drawing.engine, drawing.compared, scene, gbuffer, averaging));
     times.end();
     return {};
 }
@@ -514,6 +526,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
         // Pictures and maps may need more memory than the pool leaves.
         if (!state.device.take_refusal() || !state.surfels.shrink(state.scene))
             return tl::make_unexpected(made.error());
+        LUCARNE_TRY(state.make_engines_anew());
         state.choose_cuts(request);
     }
     LUCARNE_TRY(state.device.check());

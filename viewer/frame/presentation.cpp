@@ -13,6 +13,25 @@
 
 namespace lucarne::viewer {
 
+/// Whether the points' light is averaged apart from the background.
+bool Presentation::keeps_apart(const gi::Scene& scene, const Averaging& averaging) {
+    return averaging.points_apart || scene.look.backdrop.kind != gi::Backdrop::Kind::scene;
+}
+
+Result<void> Presentation::reserve(size_t pixels, const gi::Scene& scene, const Averaging& averaging,
+                                   bool compared) {
+    for (Images* images : {&own_, &other_}) {
+        if (images == &other_ && !compared) continue;
+        LUCARNE_TRY(device_.reserve(images->sample, pixels * sizeof(glm::vec4), "the picture's radiance"));
+        LUCARNE_TRY(device_.reserve(images->picture, pixels * sizeof(uint32_t), "picture"));
+        if (!averaging.on && !averaging.edges) continue;
+        LUCARNE_TRY(device_.reserve(images->mean, pixels * sizeof(glm::vec4), "the picture's average"));
+        if (!keeps_apart(scene, averaging)) continue;
+        LUCARNE_TRY(device_.reserve(images->points, pixels * sizeof(glm::vec4), "the picture's average"));
+    }
+    return {};
+}
+
 Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* other, const gi::Scene& scene,
                                   const gi::GBuffer& gbuffer, const Averaging& averaging) {
     const uint32_t pixels = gbuffer.width * gbuffer.height;
@@ -20,7 +39,7 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     averaged_ = averaging.on;
     edges_ = averaging.edges && accumulated_ == 1;
     mean_shown_ = averaged_ || edges_;
-    points_apart_ = averaging.points_apart || scene.look.backdrop.kind != gi::Backdrop::Kind::scene;
+    points_apart_ = keeps_apart(scene, averaging);
     if (mean_shown_) LUCARNE_TRY(add_to_average(own_, gbuffer));
     LUCARNE_TRY(expose(engine, scene, gbuffer));
     LUCARNE_TRY(show(engine, scene, pixels, own_));

@@ -40,6 +40,9 @@ class Presentation {
             false;  ///< pixels at edges show parts of their neighbours (gi::find_coverage) in the first frame
         uint32_t gaps = 0;  ///< if over 0: gaps up to twice as many pixels wide are filled
     };
+    /// Takes the memory of a picture before engines take theirs, which can do with fewer points.
+    /// `compared`: also that of the second engine's. Errors: no device memory.
+    Result<void> reserve(size_t pixels, const gi::Scene& scene, const Averaging& averaging, bool compared);
     /// Time in which automatic exposure follows the pictures by 63 %; 0: at once.
     void follow_exposure(double seconds) { exposure_seconds_ = seconds; }
     /// Finishes one frame, whose radiance is in sample(). `other`: the engine to compare with, or null.
@@ -70,6 +73,7 @@ class Presentation {
         }
     };
 
+    static bool keeps_apart(const gi::Scene& scene, const Averaging& averaging);
     Result<void> add_to_average(Images& images, const gi::GBuffer& gbuffer);
     Result<void> expose(const gi::Engine& engine, const gi::Scene& scene, const gi::GBuffer& gbuffer);
     Result<void> show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels, Images& images);

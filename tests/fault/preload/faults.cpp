@@ -5,10 +5,11 @@
 //   count:FILE       does nothing; writes the number of calls to FILE at the end
 //   trace:FILE       does nothing; writes the calls' names to FILE at the end, one a line
 //   kill:N           sends SIGKILL before the N-th call (from 1)
-//   signal:N:NUMBER  sends signal NUMBER before the N-th call, which happens only if the signal is ignored
-//   full:N           every write from the N-th call on fails with ENOSPC
-//   error:N[:ERRNO]  only the N-th call fails, with ERRNO (default: 5, EIO), unless it frees space
-//   power:N:SEED     cuts the power before the N-th call, see below
+//   kill-sync:N      sends SIGKILL before the N-th fsync, whose number does not depend on the order of
+//   threads signal:N:NUMBER  sends signal NUMBER before the N-th call, which happens only if the signal is
+//   ignored full:N           every write from the N-th call on fails with ENOSPC error:N[:ERRNO]  only the
+//   N-th call fails, with ERRNO (default: 5, EIO), unless it frees space power:N:SEED     cuts the power
+//   before the N-th call, see below
 //
 // A power cut loses or keeps by chance every sector of 512 bytes that was written since its file's last sync,
 // and so a file's growth. Of the names given since their folder's last sync, it loses the newest ones. Then
@@ -68,6 +69,8 @@ class Faults {
     int enter(const char* name, Call call) {
         ++calls_;
         if (kind_ == "trace") trace_ += std::string(name) + '\n';
+        if (kind_ == "kill-sync" && std::string(name) == "fsync" && ++syncs_ == at_)
+            ::kill(::getpid(), SIGKILL);
         if (kind_ == "full" && calls_ >= at_ && call == Call::write) return ENOSPC;
         if (calls_ != at_) return 0;
         if (kind_ == "error" && call != Call::cleanup) return seed_ ? static_cast<int>(seed_) : EIO;
@@ -186,8 +189,8 @@ class Faults {
 
     std::recursive_mutex mutex_;
     std::string kind_, argument_, trace_;
-    unsigned long long at_ = 0, seed_ = 0,
-                       calls_ = 0;  ///< `seed_`: the second number, whatever it means
+    unsigned long long at_ = 0, seed_ = 0, calls_ = 0,
+                       syncs_ = 0;  ///< `seed_`: the second number, whatever it means
     std::vector<Undo> undos_;
     std::vector<UndoName> undo_names_;
 };
