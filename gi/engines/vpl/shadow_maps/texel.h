@@ -1,5 +1,5 @@
-// The texels of the atlas and of its pyramid, shared by C++ and GLSL. native/texel-inl.h has the codec for
-// vectors.
+// The texels of the atlas and of its half resolution, shared by C++ and GLSL. native/texel-inl.h has the
+// codec for vectors.
 #ifndef LUCARNE_GI_ENGINES_VPL_SHADOW_MAPS_TEXEL_H
 #define LUCARNE_GI_ENGINES_VPL_SHADOW_MAPS_TEXEL_H
 
