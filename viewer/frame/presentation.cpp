@@ -74,8 +74,6 @@ Result<void> Presentation::expose(const gi::Engine& engine, const gi::Scene& sce
 
 Result<void> Presentation::add_to_average(Images& images, const gi::GBuffer& gbuffer) {
     const auto add = [&](bool points_only, gi::Buffer& mean) -> Result<void> {
-        const size_t bytes = size_t{gbuffer.width} * gbuffer.height * sizeof(glm::vec4);
-        LUCARNE_TRY(device_.reserve(mean, bytes, "the picture's average"));
         if (edges_) return gi::share_edges(device_, images.sample, gbuffer, points_only, mean);
         return gi::accumulate(device_, images.sample, gbuffer, accumulated_, points_only, mean);
     };
