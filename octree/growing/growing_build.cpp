@@ -131,6 +131,8 @@ struct GrowingBuild::State final : BuildListener {
 
     mutable std::mutex mutex;  ///< guards the members below
     BuildState now;
+    const NodeSource* seen = nullptr;  ///< of which a picture has been made; never read
+    std::condition_variable sight;     ///< `seen` has changed, or the build is to stop
 
     std::thread grower;       ///< enlarges the sample until the build shows nodes
     std::mutex making;        ///< guards `header` to `publishing` against the grower
@@ -152,6 +154,7 @@ struct GrowingBuild::State final : BuildListener {
 
     std::vector<std::byte> take_passing();
     void replace_sample(std::vector<std::byte> records);
+    void wait_for_picture();
 
     void read(std::span<const std::byte> records) override;
     void scanned(const SourceHeader& facts, const io::Schema& records) override;
@@ -211,9 +214,11 @@ ShownSample GrowingBuild::State::with_surface(QuickSample points, const Cube& ro
     const auto scans = header_of(*unifier, facts_of(points, root), unifier->schema()).scans;
     const StationIds ids(scans, unifier->schema());
     std::vector<std::optional<glm::dvec3>> stations(points.positions.size());
-    for (size_t i = 0; i < stations.size(); ++i)
-        if (const int32_t id = ids.of(&points.records[i * unifier->schema().stride]); id >= 0)
-            stations[i] = ids.stations()[static_cast<size_t>(id)];
+    parallel_ranges(stations.size(), 1 << 14, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            if (const int32_t id = ids.of(&points.records[i * unifier->schema().stride]); id >= 0)
+                stations[i] = ids.stations()[static_cast<size_t>(id)];
+    });
     auto surface = quick_surface(points.positions, root, stations);
     return {std::move(points), std::move(surface), root};
 }
@@ -330,6 +335,14 @@ void GrowingBuild::State::replace_sample(std::vector<std::byte> records) {
     if (!taken) return;
     sample = with_surface(std::move(*taken), header.root);
     show_sample(header.root);
+    wait_for_picture();
+}
+
+/// Leaves the processors to a picture of the newest source.
+void GrowingBuild::State::wait_for_picture() {
+    std::unique_lock lock(mutex);
+    sight.wait_for(lock, std::chrono::duration<double>(options.patience),
+                   [&] { return stop || seen == now.source.get(); });
 }
 
 void GrowingBuild::State::building(const io::Schema& records) {
@@ -420,8 +433,20 @@ GrowingBuild::~GrowingBuild() {
 }
 
 void GrowingBuild::stop() {
-    state_->stop = true;
-    state_->grown = true;
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->stop = true;
+        state_->grown = true;
+    }
+    state_->sight.notify_all();
+}
+
+void GrowingBuild::seen(const NodeSource* source) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->seen = source;
+    }
+    state_->sight.notify_all();
 }
 
 void GrowingBuild::begin(std::function<void()> changed) {

@@ -40,6 +40,9 @@ struct GrowingOptions {
     /// Points that are kept of the build's first pass, and replace the sample when it has ended (fewer if
     /// they would take over 128 MiB). 0: the sample stays.
     uint64_t read_points = 0;
+    /// For how many seconds the build waits, at most, until a picture of such a sample has been made
+    /// (seen()): both take all processors, and the picture is waited for. 0: the build goes on at once.
+    double patience = 0;
 };
 
 /// A scan that is shown at once and converted meanwhile. Its source is first a sample of the whole scan; then
@@ -64,6 +67,8 @@ class GrowingBuild {
     void stop();
     /// Blocks until the build has ended.
     void wait();
+    /// Says that a picture of this source has been made.
+    void seen(const NodeSource* source);
 
     BuildState state() const;
 

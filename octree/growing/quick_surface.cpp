@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -93,19 +94,21 @@ std::vector<QuickSurface> quick_surface(std::span<const glm::dvec3> points, cons
     // In units of the root cube, floats can represent the squares of any cloud's distances.
     const double scale = 1 / root.size;
     const Cube shifted{root.min - glm::dvec3(kShift * root.size), root.size * (1 + 2 * kShift)};
-    const std::array<Curve, 2> curves = {Curve(points, root), Curve(points, shifted)};
+    std::array<std::optional<Curve>, 2> found;
+    parallel_ranges(2, 1, [&](size_t i, size_t) { found[i].emplace(points, i == 0 ? root : shifted); });
+    const std::array<const Curve*, 2> curves = {&*found[0], &*found[1]};
     std::vector<QuickSurface> surface(points.size());
     std::vector<float> neighbours_area(points.size());
     std::vector<uint32_t> near(points.size() * search.neighbours);  // `neighbours` for each point
     parallel_ranges(points.size(), 1 << 13, [&](size_t first, size_t last) {
         for (size_t rank = first; rank < last; ++rank) {
-            const uint32_t i = curves[0].order[rank].index;
+            const uint32_t i = curves[0]->order[rank].index;
             Nearest nearest(search.neighbours);
-            for (const Curve& curve : curves) {
-                const size_t here = curve.rank[i], from = here - std::min(here, search.window),
+            for (const Curve* curve : curves) {
+                const size_t here = curve->rank[i], from = here - std::min(here, search.window),
                              to = std::min(here + search.window + 1, points.size());
                 for (size_t at = from; at < to; ++at) {
-                    const uint32_t other = curve.order[at].index;
+                    const uint32_t other = curve->order[at].index;
                     if (other != i) nearest.add(other, glm::vec3((points[other] - points[i]) * scale));
                 }
             }

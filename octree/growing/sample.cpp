@@ -143,9 +143,11 @@ Result<QuickSample> with_positions(const Unifier& inputs, QuickSample sample) {
     sample.positions.resize(count);
     sample.min = glm::dvec3(std::numeric_limits<double>::infinity());
     sample.max = -sample.min;
-    for (size_t i = 0; i < count; ++i) {
-        const glm::dvec3 p = io::position_of(inputs.schema(), &sample.records[i * stride]);
-        sample.positions[i] = p;
+    parallel_ranges(count, kPiece, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            sample.positions[i] = io::position_of(inputs.schema(), &sample.records[i * stride]);
+    });
+    for (const glm::dvec3& p : sample.positions) {
         sample.min = glm::min(sample.min, p);
         sample.max = glm::max(sample.max, p);
     }

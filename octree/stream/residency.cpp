@@ -410,6 +410,12 @@ bool ResidencyBase::wait() {
     return state_->queue.empty();
 }
 
+bool ResidencyBase::wait_for(std::chrono::duration<double> most) {
+    std::unique_lock lock(state_->mutex);
+    return state_->idle.wait_for(lock, most, [&] { return state_->nothing_moves(); }) &&
+           state_->queue.empty();
+}
+
 bool ResidencyBase::resident(uint32_t node) const {
     const std::lock_guard lock(state_->mutex);
     const auto entry = state_->entries.find(node);

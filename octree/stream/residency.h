@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <concepts>
 #include <cstdint>
 #include <functional>
@@ -79,6 +80,8 @@ class ResidencyBase {
     /// Blocks until every wanted node is loaded, failed or refused by the cap, and then returns true. Returns
     /// false if what is in transit has reached its cap: loading continues when events have been polled.
     bool wait();
+    /// Likewise, but also returns false once this time has passed.
+    bool wait_for(std::chrono::duration<double> most);
     bool resident(uint32_t node) const;
     ResidencyStats stats() const;
     /// Returns the first load error since the last call, if any; the caller decides what to tell the user. A

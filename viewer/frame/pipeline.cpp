@@ -35,6 +35,8 @@ constexpr double kAhead = 0.5;       // s of the camera's motion that are loaded
 /// Time in which a frame without `wait` takes nodes that have arrived, s, and as a share of the last frame's
 /// time: a slow frame takes what has arrived during it, or a picture would need dozens of slow frames.
 constexpr double kLeastLoadingTime = 0.002, kLoadingShare = 0.1;
+/// Time for which the first picture of all waits for its nodes, s: a few of them make no picture.
+constexpr double kFirstPatience = 0.1;
 
 bool stopped(const FrameRequest& request) {
     return request.stop && *request.stop;
@@ -101,6 +103,7 @@ struct Pipeline::State {
     gi::Scene scene;
     uint64_t content = 1;  // gi::Frame::content
     bool fresh = false;    // the source is new, and nothing of it has been drawn yet
+    bool first = true;     // nothing has been drawn yet
     // Scene, settings, budgets or engine have changed: cuts are chosen again, and the average starts again.
     bool changed = true;
 
@@ -188,8 +191,9 @@ Result<void> Pipeline::State::stream(const FrameRequest& request) {
     std::vector<const octree::Cut*> later;
     for (const octree::Cut& cut : ahead) later.push_back(&cut);
     const double seconds = std::max(kLeastLoadingTime, kLoadingShare * last_seconds);
-    LUCARNE_TRY(request.wait || fresh ? surfels.load_all(chosen.all())
-                                      : surfels.load(chosen.all(), later, seconds));
+    LUCARNE_TRY(request.wait || fresh
+                    ? surfels.load_all(chosen.all())
+                    : surfels.load(chosen.all(), later, seconds, first ? kFirstPatience : 0));
     const auto error = surfels.take_error();
     if (error) return {};
     if (request.wait) return error;
@@ -533,7 +537,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     state.times.finish();
     const bool given_up = stopped(request);
     state.last = request;
-    state.changed = state.fresh = false;
+    state.changed = state.fresh = state.first = false;
     state.last_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     FrameStats stats = state.stats(state.last_seconds);
     stats.given_up = given_up;

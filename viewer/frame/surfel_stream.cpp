@@ -188,8 +188,10 @@ Result<void> SurfelStream::take_arrivals(double seconds) {
 }
 
 Result<void> SurfelStream::load(const std::vector<const octree::Cut*>& wanted,
-                                const std::vector<const octree::Cut*>& later, double seconds) {
+                                const std::vector<const octree::Cut*>& later, double seconds,
+                                double patience) {
     residency_->want(wanted, later);
+    if (patience > 0) residency_->wait_for(std::chrono::duration<double>(patience));
     return take_arrivals(seconds);
 }
 

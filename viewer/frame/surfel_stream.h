@@ -45,10 +45,10 @@ class SurfelStream {
     Result<void> renew(const gi::Scene& scene);
 
     /// Begins to load nodes of these cuts, then of those that may be wanted `later`, and takes those that
-    /// have arrived, for about so many seconds: two milliseconds are enough for a hundred nodes. Errors:
-    /// device memory.
+    /// have arrived, for about so many seconds: two milliseconds are enough for a hundred nodes. Waits
+    /// `patience` seconds at most for nodes that are on their way. Errors: device memory.
     Result<void> load(const std::vector<const octree::Cut*>& wanted,
-                      const std::vector<const octree::Cut*>& later, double seconds);
+                      const std::vector<const octree::Cut*>& later, double seconds, double patience);
     /// Loads all nodes of these cuts that the caps allow. Errors likewise.
     Result<void> load_all(const std::vector<const octree::Cut*>& wanted);
     /// Returns why a node could not be read, once. It is left out with its descendants.

@@ -154,6 +154,7 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
     growing.first_points = opening.first_points;
     growing.first_read = opening.first_read;
     growing.read_points = opening.read_points;
+    growing.patience = opening.patience;
     growing.sampling = opening.sampling;
     // A temporary folder is removed with the program, together with its contents.
     if (opening.resumable && !open.folder) growing.build.resume = octree::Resume::go_on;

@@ -29,6 +29,7 @@ struct Opening {
     /// (octree::GrowingOptions::first_points).
     uint64_t first_points = 0, first_read = 0;
     uint64_t read_points = 0;   ///< kept of the first pass of the conversion (octree::GrowingOptions)
+    double patience = 0;        ///< for which the conversion waits for pictures of these, s (likewise)
     octree::Sampling sampling;  ///< is told of the progress of sampling, and may end it
     /// An interrupted conversion keeps its finished stages, and the next conversion continues from them.
     bool resumable = false;

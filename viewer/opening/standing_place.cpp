@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <glm/geometric.hpp>
+
+#include "io/core/parallel.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -28,6 +31,7 @@ constexpr double kSunStep = 5;                       ///< degrees
 constexpr double kLeastOpen = .05;
 
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
+constexpr size_t kPlacesPerTask = 64;
 constexpr int kAzimuths = 24;
 constexpr double kWalled = .8;  ///< share of blocked directions from which a place is in a room
 constexpr size_t kMostLamps = 3;
@@ -219,14 +223,18 @@ Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) 
     Standing found;
     if (grid.empty() || grid.cell() > kLeastHeight * metre) return found;  // cells hide rooms
     const std::vector<Place> places = places_to_stand(grid, metre);
+    std::vector<std::optional<double>> scores(places.size());  // of places in rooms
+    parallel_ranges(places.size(), kPlacesPerTask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            if (enclosed(grid, places[i].eye)) scores[i] = roominess(grid, places[i].eye, metre);
+    });
     double most = 0;
     size_t in_rooms = 0;
     const Place* best = nullptr;
-    for (const Place& place : places) {
-        if (!enclosed(grid, place.eye)) continue;
+    for (size_t i = 0; i < places.size(); ++i) {
+        if (!scores[i]) continue;
         ++in_rooms;
-        const double score = roominess(grid, place.eye, metre);
-        if (score > most) most = score, best = &place;
+        if (*scores[i] > most) most = *scores[i], best = &places[i];
     }
     if (!best) return found;
     found.enclosed_share = static_cast<double>(in_rooms) / static_cast<double>(places.size());

@@ -22,6 +22,7 @@ constexpr uint64_t kFirstPoints = 60'000;    ///< of these, for the first pictur
 /// Points that are read for it where files cannot seek, for each core: some .2 s of decoding LAZ.
 constexpr uint64_t kFirstReadPerCore = 250'000;
 constexpr uint64_t kReadPoints = 4'000'000;      ///< shown of the scan that is being converted
+constexpr double kPatience = 2;                  ///< s for which the conversion waits for pictures of these
 constexpr uint64_t kLeastSamplePoints = 20'000;  ///< for one scan
 /// Each scan keeps one or two files open, and a process may have 1024.
 constexpr size_t kMostScans = 400;
@@ -137,6 +138,7 @@ Result<Opened> open_paths(const InputOptions& how, bool together, Watch& watch, 
     opening.first_points = sample_points * kFirstPoints / kSamplePoints;
     opening.first_read = sample_points * first_read() / kSamplePoints;
     opening.read_points = kReadPoints;
+    opening.patience = kPatience;
     opening.sampling = [&watch](uint64_t done, uint64_t total) {
         watch.share = total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;
         return !watch.cancelled;
@@ -294,6 +296,12 @@ void ScanSet::convert_next() {
     item.going = true;
     next->state = ScanState::converting;
     item.input.build->begin(shared_->changed);
+}
+
+void ScanSet::seen() {
+    if (stale_ || joining_) return;  // the next source has more
+    for (const auto& [id, item] : items_)
+        if (item.going && item.input.build) item.input.build->seen(item.source.get());
 }
 
 /// Fills a row from its source.

@@ -90,6 +90,8 @@ class ScanSet {
     void go_on(uint64_t id);
     /// Starts the next conversion unless one is running.
     void convert_next();
+    /// Says that a picture of source() has been made: conversions may wait for it.
+    void seen();
 
     /// Applies finished background jobs; call once per frame. Opens a stopped scan again once another program
     /// has finished its cache. Returns true if source() has changed.

@@ -96,6 +96,7 @@ void ViewSession::take_picture() {
     model_.health.nodes =
         lost == 0 ? "" : fmt::format("left out of the picture: {}", latest->stats.lost_node);
     if (lost > 1) model_.health.nodes += fmt::format(" (and {} more)", lost - 1);
+    if (latest->source == scans_.source() && latest->stats.nodes_pending == 0) scans_.seen();
     const bool last_source = scans_.settled() && latest->source == scans_.source();
     const bool own_engine = latest->stats.lit_by == sent_.method.engine;  // none that stands in
     const bool whole = latest->request == sent_number_ && !latest->moving && own_engine &&
@@ -394,6 +395,7 @@ void ViewSession::forget_message() {
 }
 
 void ViewSession::send_request() {
+    if (!scans_.source()) return;  // its camera is not known yet
     // Changes of lights count as motion; changes of display alone do not.
     const uint64_t moves = model_.view.scene_version - model_.view.shown_changes;
     if (scene_seen_ != moves && scene_seen_ != 0) moved_ = Clock::now();
@@ -410,7 +412,9 @@ void ViewSession::send_request() {
     if (shot_) request.pictures = shot_->pictures;
     request.frame.moving = request.moving;
     request.frame.stand_in = request.moving;
-    request.frame.colours_only = !model_.view.picture;  // something is seen at once, and light follows
+    // Something is seen at once, and light follows.
+    request.frame.colours_only =
+        !model_.view.picture && !gi::engine_is(request.method.engine, &gi::EngineInfo::unlit);
     request.frame.stand_in_early = true;
     if (request.moving) {
         const ImageSize size = quality_.size(request.frame.size);

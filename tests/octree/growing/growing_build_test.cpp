@@ -268,6 +268,38 @@ TEST(GrowingBuild, ItsFirstPassOverASmallScanShowsTheWholeScan) {
                 << "source " << i << ", level " << level;
 }
 
+/// Options of a build that waits for pictures of its first pass until the end of time.
+GrowingOptions patient(const std::filesystem::path& output) {
+    GrowingOptions options = options_for(output);
+    options.read_points = 200'000;
+    options.patience = 1e6;
+    return options;
+}
+
+TEST(GrowingBuild, GoesOnOnceAPictureOfItsFirstPassHasBeenSeen) {
+    const TempFolder folder;
+    const auto build = GrowingBuild::open(inputs_of(150'000, false), patient(folder / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    (*build)->begin([&] { (*build)->seen((*build)->state().source.get()); });
+    (*build)->wait();
+    EXPECT_TRUE((*build)->state().finished);
+}
+
+TEST(GrowingBuild, StopsWhileItWaitsForAPicture) {
+    const TempFolder folder;
+    const auto build = GrowingBuild::open(inputs_of(150'000, false), patient(folder / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    std::counting_semaphore<> changes(0);
+    (*build)->begin([&] { changes.release(); });
+    changes.acquire();  // a sample of the first pass, of which no picture is made
+    (*build)->seen(nullptr);
+    EXPECT_FALSE((*build)->state().finished);
+    (*build)->stop();
+    (*build)->wait();
+    EXPECT_TRUE((*build)->state().stopped);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(GrowingBuild, APointWithoutANormalThatTheSampleMissesGetsOne) {
     const TempFolder folder;
     io::Schema schema;

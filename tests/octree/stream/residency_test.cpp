@@ -1,5 +1,6 @@
 #include "octree/stream/residency.h"
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -115,6 +116,18 @@ TEST(Residency, LoadsEverythingWantedThatFits) {
     EXPECT_EQ(stats.bytes_held, source.nodes().size() * kNode);
     EXPECT_EQ(stats.bytes_loaded, stats.bytes_held);
     EXPECT_TRUE(residency.take_error());
+}
+
+TEST(Residency, WaitsNoLongerThanItIsToldTo) {
+    PlaneSource source(2, kPoints, 10.0);
+    source.shut();
+    Residency residency(source, {.threads = 2});
+    want(residency, full_cut(source));
+    EXPECT_FALSE(residency.wait_for(std::chrono::milliseconds(1)));
+    EXPECT_TRUE(residency.poll().empty());
+    source.open();
+    EXPECT_TRUE(residency.wait_for(std::chrono::hours(1)));
+    EXPECT_EQ(residency.poll().size(), source.nodes().size());
 }
 
 TEST(Residency, LoadsTheMostImportantFirstAndParentsBeforeChildren) {
