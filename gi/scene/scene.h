@@ -70,8 +70,13 @@ struct Albedo {
     /// Whether stations of different exposure are balanced, and points that were never photographed get the
     /// colour of those around them.
     bool balance = true;
+    /// The linear colour of a white surface in the scan: the colour of the light at that time, which is
+    /// divided out. Its brightness does not matter.
+    glm::dvec3 white{1.0};
 
     bool operator==(const Albedo&) const = default;
+    /// What is packed into surfels, for comparisons.
+    auto packed() const { return std::tie(flatten, balance, white); }
 };
 
 struct SceneCamera {

@@ -117,6 +117,7 @@ Result<Albedo> read_albedo(JsonObject object) {
     LUCARNE_ASSIGN(albedo.scale, object.number("scale", kScale, 1));
     LUCARNE_ASSIGN(albedo.flatten, object.number("flatten", kShare, 0));
     LUCARNE_ASSIGN(albedo.balance, object.boolean("balance", true));
+    LUCARNE_ASSIGN(albedo.white, object.vector("white", kWhite, dvec3(1)));
     LUCARNE_TRY(object.finish());
     return albedo;
 }

@@ -184,6 +184,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     put(albedo, "scale", scene.albedo.scale, 1.0);
     put(albedo, "flatten", scene.albedo.flatten, 0.0);
     put(albedo, "balance", scene.albedo.balance, true);
+    put(albedo, "white", scene.albedo.white, dvec3(1));
     put_object("albedo", albedo);
     put_object("look", write_look(scene.look));
     if (scene.comparison) written["comparison"] = write_comparison(*scene.comparison);

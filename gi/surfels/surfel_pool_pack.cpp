@@ -5,6 +5,7 @@
 
 #include <glm/vector_relational.hpp>
 
+#include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/baked_light.h"
 #include "gi/surfels/colouring.h"
@@ -32,7 +33,8 @@ class Packer {
           normals_(header.schema),
           colouring_(header.schema, scene.look, first_scan),
           baked_(scene.albedo.flatten > 0 ? baked : nullptr),
-          colours_(header, cube_, data, scene.albedo.balance) {
+          colours_(header, cube_, data, scene.albedo.balance),
+          cast_(scene.albedo.white / luminance(scene.albedo.white)) {
         area_ = find(io::names::area, 1);
         classification_ = find(io::names::classification, 1);
         scan_ = find(io::names::scan, 1);
@@ -125,6 +127,11 @@ class Packer {
         constexpr double kLargestFlattened = 0.95;  // as brdf.h caps it
         const auto own = colours_.of(record, position);
         glm::dvec3 srgb = own.value_or(glm::dvec3(linear_to_srgb(static_cast<float>(kDefault))));
+        if (own && cast_ != glm::dvec3(1.0))
+            for (int i = 0; i < 3; ++i) {
+                const double linear = srgb_to_linear(static_cast<float>(srgb[i])) / cast_[i];
+                srgb[i] = linear_to_srgb(static_cast<float>(std::min(linear, 1.0)));
+            }
         if (own && baked_) {
             const double factor = baked_->factor(position, scene_.albedo.flatten);
             for (int i = 0; i < 3; ++i) {
@@ -142,6 +149,7 @@ class Packer {
     const Colouring colouring_;
     const BakedLight* const baked_;
     PointColours colours_;
+    const glm::dvec3 cast_;  ///< of the scan's colours, linear, luminance 1
     const Attribute *area_, *classification_, *scan_, *edge_;
     uint32_t packed_ = 0;
     std::vector<uint32_t> outliers_;

@@ -498,8 +498,7 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
     if (!std::ranges::equal(scene.materials, state_->scene.materials, {}, &gi::SceneMaterial::assignment,
                             &gi::SceneMaterial::assignment) ||
         !gi::same_colours(scene.look, state_->scene.look) ||
-        scene.albedo.flatten != state_->scene.albedo.flatten ||
-        scene.albedo.balance != state_->scene.albedo.balance)
+        scene.albedo.packed() != state_->scene.albedo.packed())
         state_->surfels.make_stale();
     if (scene.light_inputs() != state_->scene.light_inputs()) {
         state_->changed = true;

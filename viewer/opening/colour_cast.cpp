@@ -12,10 +12,16 @@
 namespace lucarne::viewer {
 namespace {
 
-/// Chosen on four scans: two of white rooms, one of yellow walls,
-/// and a cellar photographed by tungsten light.
-constexpr double kShare = .6;
-constexpr double kWeakest = .01;  ///< component's square over that of the strongest
+/// The share that counts as cast, by the ratio of the strongest component to the weakest: paint rarely
+/// colours a whole scan as strongly as tungsten light does. Chosen on four scans: two of white rooms, one of
+/// yellow walls, and a cellar photographed by tungsten light, whose ceiling was red in its own light with .6.
+constexpr double kShareOfWeak = .6, kShareOfStrong = .85, kWeak = 2, kStrong = 4;
+constexpr double kWeakest = .04;  ///< component's square over that of the strongest
+
+double share_of(double ratio) {
+    const double strength = std::clamp((ratio - kWeak) / (kStrong - kWeak), 0.0, 1.0);
+    return glm::mix(kShareOfWeak, kShareOfStrong, strength);
+}
 
 }  // namespace
 
@@ -35,7 +41,9 @@ void ColourCast::add(const io::Schema& schema, const std::byte* record, double w
 glm::dvec3 ColourCast::result() const {
     const double most = std::max({sum_.x, sum_.y, sum_.z});
     if (!(most > 0)) return glm::dvec3(1.0);
-    const glm::dvec3 light = glm::pow(glm::max(sum_ / most, kWeakest), glm::dvec3(kShare / 2));
+    const glm::dvec3 squares = glm::max(sum_ / most, kWeakest);
+    const double ratio = 1 / std::sqrt(std::min({squares.x, squares.y, squares.z}));
+    const glm::dvec3 light = glm::pow(squares, glm::dvec3(share_of(ratio) / 2));
     return light / gi::luminance(light);
 }
 

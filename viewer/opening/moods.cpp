@@ -114,9 +114,9 @@ gi::SceneLight spot_on(const Site& site, const char* name, const glm::dvec3& tow
 }
 
 /// What is shown as white: half-way between daylight and the light (in mired), because eyes adapt to lamps
-/// in part; and all of the scan's own cast, which the light of its photographs left in its colours.
-glm::dvec3 white_for(double kelvin, const glm::dvec3& cast) {
-    const glm::dvec3 white = white_of(2 / (1 / kelvin + 1 / gi::kDaylight)) / white_of(gi::kDaylight) * cast;
+/// in part.
+glm::dvec3 white_for(double kelvin) {
+    const glm::dvec3 white = white_of(2 / (1 / kelvin + 1 / gi::kDaylight)) / white_of(gi::kDaylight);
     return white / gi::luminance(white);
 }
 
@@ -253,6 +253,8 @@ bool shows_moods(std::string_view engine) {
 
 void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera) {
     Light light;
+    const bool painted = mood != Mood::clay && mood != Mood::scan_colours;
+    scene.albedo.white = painted ? site.cast : glm::dvec3(1);
     if (mood == Mood::clay)
         scene.look.colour = gi::ColourBy::clay;
     else if (scene.look.colour == gi::ColourBy::clay)
@@ -288,7 +290,7 @@ void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCame
     scene.environment_on = true;
     scene.look.backdrop = light.backdrop;
     scene.exposure_ev.reset();
-    scene.white = white_for(light.kelvin, mood == Mood::clay ? glm::dvec3(1) : site.cast);
+    scene.white = white_for(light.kelvin);
 }
 
 void set_daytime(gi::Scene& scene, const gi::SunMoment& moment) {

@@ -67,14 +67,19 @@ void luminance_range(const Rendering& model) {
     }
 }
 
-/// Edits which light is shown as white, by the temperature of the nearest black body.
-void white_balance(View& view) {
+/// Edits a colour of light by the temperature of the nearest black body. Returns whether it has changed.
+bool temperature(const char* label, glm::dvec3& white) {
     const glm::dvec3 daylight = gi::black_body_colour(gi::kDaylight);
-    float kelvin = static_cast<float>(gi::black_body_temperature(view.scene.white * daylight));
-    if (ImGui::SliderFloat("White balance", &kelvin, 2000, 12000, "%.0f K", ImGuiSliderFlags_AlwaysClamp)) {
-        view.scene.white = gi::black_body_colour(kelvin) / daylight;
-        view.shown_changed();
-    }
+    float kelvin = static_cast<float>(gi::black_body_temperature(white * daylight));
+    if (!ImGui::SliderFloat(label, &kelvin, 2000, 12000, "%.0f K", ImGuiSliderFlags_AlwaysClamp))
+        return false;
+    white = gi::black_body_colour(kelvin) / daylight;
+    return true;
+}
+
+/// Edits which light is shown as white.
+void white_balance(View& view) {
+    if (temperature("White balance", view.scene.white)) view.shown_changed();
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("Light of this colour is shown as white. 6500 K: colours are shown as they are.");
 }
@@ -223,6 +228,10 @@ void albedo(const Rendering& model) {
     tell_cost(
         "share of the light that the scan was taken in to be divided out: luminance is evened out over\n"
         "a 48th of the scan's length. All points are sent to the device again");
+    if (temperature("Light of the scan", albedo.white)) model.view.scene_changed();
+    tell_cost(
+        "colour of the light in which the points were photographed, which is divided out of their colours.\n"
+        "All points are sent to the device again");
     if (ImGui::Checkbox("Balance stations", &albedo.balance)) model.view.scene_changed();
     tell_cost(
         "gains that the conversion found make stations of different exposure agree, and points that were\n"

@@ -136,7 +136,10 @@ class Chance {
             scene["environment"] = {
                 {"on", coin()}, {"radiance", list(vector(0, 9))}, {"rotation", number(-360, 360)}};
         if (coin())
-            scene["albedo"] = {{"scale", number(0, 10)}, {"flatten", number(0, 1)}, {"balance", coin()}};
+            scene["albedo"] = {{"scale", number(0, 10)},
+                               {"flatten", number(0, 1)},
+                               {"balance", coin()},
+                               {"white", {number(.5, 2), 1, number(.5, 2)}}};
         if (coin()) scene["look"] = look();
         if (coin())
             scene["comparison"] = {{"engine", "direct"},

@@ -4,6 +4,7 @@
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
+#include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/surfel_pool.h"
 
@@ -28,10 +29,11 @@ struct Node {
         ++data.count;
     }
     /// Returns the linear colours that engines see.
-    std::vector<glm::vec3> colours(bool balance = true) const {
+    std::vector<glm::vec3> colours(bool balance = true, const glm::dvec3& white = glm::dvec3(1)) const {
         Scene scene;
         scene.materials.resize(1);
         scene.albedo.balance = balance;
+        scene.albedo.white = white;
         octree::NodeInfo info;
         info.count = data.count;
         std::vector<glm::vec3> result;
@@ -65,6 +67,32 @@ TEST(PointColours, AStationsGainMultipliesItsLinearColours) {
     expect_near(colours[2], own);
     expect_near(colours[3], {1, 0.5, 0});
     for (size_t i = 0; i < 3; ++i) expect_near(node.colours(false)[i], own);
+}
+
+TEST(PointColours, TheLightOfTheScanIsDividedOutOfColoursThatPointsHave) {
+    Node node;
+    node.header.station_colours = {{0, 2, glm::dvec3(2), {}}};
+    const glm::vec3 paint(0.2f), lamp(1.8f, 0.9f, 0.4f);
+    const glm::vec3 seen = paint * lamp / luminance(lamp);
+    std::array<uint8_t, 3> code{};
+    for (int c = 0; c < 3; ++c)
+        code[static_cast<size_t>(c)] = static_cast<uint8_t>(255 * linear_to_srgb(seen[c]) + 0.5f);
+    node.add({1, 1, 1}, code);
+    node.add({1, 1, 1}, code, 2);
+    node.add({1, 1, 1}, {255, 255, 255});
+    for (const double brightness : {0.01, 1.0, 500.0}) {
+        const auto colours = node.colours(true, brightness * glm::dvec3(lamp));
+        expect_near(colours[0], paint, 0.02f);
+        expect_near(colours[1], 2.0f * paint, 0.02f);
+        EXPECT_EQ(colours[2].z, 1.0f) << "no more than all light is reflected";
+    }
+    Node none;
+    none.header.schema = {};
+    none.header.schema.add("intensity", io::ScalarType::u16);
+    none.data.records.resize(none.header.schema.stride);
+    none.data.count = 1;
+    const auto grey = none.colours(true, lamp)[0];
+    EXPECT_EQ(grey, glm::vec3(grey.x)) << "of a point without a colour";
 }
 
 TEST(PointColours, AnEntryWithoutAStationIsForTheWholeScan) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/shared/luminance.h"
+#include "gi/shared/surfel_code.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -44,6 +45,18 @@ TEST(ColourCast, WarmLightIsFoundInPart) {
     const double linear_ratio =
         std::pow((200 + 14.025) / (90 + 14.025), 2.4);  // IEC 61966-2-1, 14.025 of 255
     EXPECT_LT(cast.x / cast.z, linear_ratio);
+}
+
+TEST(ColourCast, MoreOfAStrongColourThanOfAWeakOneIsLight) {
+    const auto share = [](uint8_t blue) {
+        const glm::dvec3 cast = cast_of({{200, 200, blue}});
+        return std::log(cast.x / cast.z) / std::log(gi::srgb_to_linear(200 / 255.0f) /
+                                                    gi::srgb_to_linear(static_cast<float>(blue) / 255));
+    };
+    EXPECT_NEAR(share(160), .6, .001);   // 1.7 times
+    EXPECT_NEAR(share(100), .85, .001);  // 4.5 times
+    EXPECT_GT(share(120), .61);
+    EXPECT_LT(share(120), .84);
 }
 
 TEST(ColourCast, IsBoundedAndWhiteWithoutColours) {
