@@ -13,6 +13,7 @@
 #include "io/core/options.h"
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
+#include "octree/cluster/only_rank.h"
 #include "octree/colours/colour_survey.h"
 #include "octree/convert/build_inputs.h"
 #include "octree/convert/chunks/point_stations.h"
@@ -23,6 +24,7 @@
 #include "octree/convert/nodes/join_ranks.h"
 #include "octree/convert/scans/early_count.h"
 #include "octree/convert/scans/scan_stage.h"
+#include "octree/convert/takeover.h"
 #include "octree/convert/together.h"
 #include "octree/holes/hole_survey.h"
 
@@ -67,6 +69,9 @@ auto resumable(Workspace& work, Ranks* ranks, const char* stage, const Restore& 
         uint64_t all = sound ? 1 : 0;
         if (ranks) LUCARNE_TRY(ranks->sum({&all, 1}));
         if (all == (ranks ? ranks->count() : 1)) return std::move(*before);
+        if (ranks && ranks->rank() == 0 && all > 0)
+            log::warn("{} of {} ranks have lost what stage '{}' made; all ranks run it again",
+                      ranks->count() - all, ranks->count(), stage);
     }
     auto outcome = run();
     if (outcome) LUCARNE_TRY(work.finish(stage, outcome->save()));
@@ -257,7 +262,24 @@ uint64_t points_of(const ChunkStore& store) {
 struct Held {
     std::optional<SharedCache> cache;
     std::optional<Workspace> work;
+    std::vector<Workspace> left;  ///< of other numbers of ranks
 };
+
+/// Opens the workspace, with what an interrupted build has left, if this one is to go on. A meeting.
+Result<void> open_workspace(const BuildOptions& options, const Unifier& inputs, InputRange own,
+                            const std::filesystem::path& folder, const MemoryPlan& memory, Held& held) {
+    OnlyRank alone;
+    Ranks& ranks = options.ranks ? *options.ranks : alone;
+    std::string identity;
+    if (options.resume != Resume::never) {
+        LUCARNE_ASSIGN(identity, build_identity(options, own, ranks));
+    }
+    LUCARNE_ASSIGN(held.work, Workspace::open(folder, options.output, identity, options.resume,
+                                              {ranks.rank(), ranks.count()}));
+    LUCARNE_TRY(meet(ranks));
+    held.left = held.work->left_by_others();
+    return take_over(*held.work, held.left, ranks, inputs, options, memory);
+}
 
 /// Builds the cache; of several ranks each does its part.
 Result<BuildReport> build(const BuildOptions& options, Held& held) {
@@ -288,10 +310,7 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
         LUCARNE_ASSIGN(held.cache, SharedCache::create(*ranks, options, folder));
     }
     const InputRange own = ranks ? inputs_of_rank(inputs, *ranks) : InputRange{0, inputs.inputs()};
-    const std::string identity = options.resume == Resume::never ? "" : build_identity(options, own);
-    LUCARNE_ASSIGN(held.work,
-                   Workspace::open(folder, options.output, identity, options.resume,
-                                   ranks ? std::optional(ranks->rank()) : std::optional<size_t>()));
+    LUCARNE_TRY(open_workspace(options, inputs, own, folder, memory, held));
     Workspace& work = *held.work;
     std::optional<CountGrid> counted;
     LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {

@@ -1,6 +1,6 @@
 #include "octree/convert/identity.h"
 
-#include <array>
+#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kHeadBytes = 64 << 10;
-constexpr int kRecords = 5;  ///< version of the stages' records (save and restore); raise it with any change
+constexpr int kRecords = 6;  ///< version of the stages' records (save and restore); raise it with any change
 
 /// Empty for sources that are not files.
 std::string file_identity(const std::filesystem::path& path) {
@@ -28,22 +28,34 @@ std::string file_identity(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::string build_identity(const BuildOptions& options, InputRange own) {
+Result<std::string> build_identity(const BuildOptions& options, InputRange own, Ranks& ranks) {
+    Ranks::Bytes found;
+    for (size_t i = own.first; i < own.end; ++i) {
+        std::error_code error;
+        const std::string file =
+            file_identity(std::filesystem::absolute(options.inputs[i]->info().path, error)) + "\n";
+        const auto bytes = std::as_bytes(std::span(file));
+        found.insert(found.end(), bytes.begin(), bytes.end());
+    }
+    LUCARNE_ASSIGN(const auto all, share(ranks, found));
+    std::string files;  // a line for each input
+    for (const Ranks::Bytes& part : all)
+        files.append(reinterpret_cast<const char*>(part.data()), part.size());
     std::string text =
         fmt::format("format {}, records {}, --memory {}, --normals mode {}, --neighbours {}, search {} {}\n",
                     format::kVersion, kRecords, options.memory, static_cast<int>(options.normals),
                     options.neighbours, static_cast<int>(options.neighbour_search), options.read_options);
-    if (options.ranks) text += fmt::format("rank {} of {}\n", options.ranks->rank(), options.ranks->count());
-    for (size_t i = 0; i < options.inputs.size(); ++i) {
+    for (size_t i = 0, line = 0; i < options.inputs.size(); ++i) {
         const auto* input = options.inputs[i];
         SourceHeader header{.schema = input->schema()};
         header.scans.push_back(input->info());
         const std::string facts = metadata_text(header);
         std::error_code error;
         const auto path = std::filesystem::absolute(input->info().path, error);
-        text += fmt::format("{}{}, header {:016x}\n", path.string(),
-                            i >= own.first && i < own.end ? file_identity(path) : "",
+        const size_t end = std::min(files.find('\n', line), files.size());
+        text += fmt::format("{}{}, header {:016x}\n", path.string(), files.substr(line, end - line),
                             format::checksum(std::as_bytes(std::span(facts))));
+        line = std::min(end + 1, files.size());
     }
     return text;
 }

@@ -1,4 +1,5 @@
 // What goes wrong on one rank ends all of them with a clear error, and nothing half-written stays.
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -6,61 +7,19 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "tests/cluster/ranks.h"
+#include "tests/cluster/rank_faults.h"
 
 namespace lucarne {
 namespace {
 
+using test::kSmall;
 using test::lucarne;
 using test::mpirun;
 using test::on_ranks;
 using test::Outcome;
+using test::RankFaults;
 using test::shell;
-
-constexpr const char* kSmall = " --memory 48M -o ";
-
-class RankFaults : public testing::Test {
- protected:
-    void SetUp() override {
-        LUCARNE_NEEDS_RANKS();
-        for (const char* scene : {"cornell", "house"}) {
-            const Outcome made = lucarne(std::string("generate ") + scene + " --points 60k -o " +
-                                         folder_ / (std::string(scene) + ".las"));
-            ASSERT_EQ(made.code, 0) << made.output;
-        }
-        std::filesystem::create_directory(folder_ / "out");
-        std::filesystem::create_directory(folder_ / "temp");
-    }
-    std::string inputs() const { return folder_ / "cornell.las" + " " + folder_ / "house.las"; }
-    std::string output() const { return folder_ / "out/a.luc"; }
-    std::string convert() const {
-        return "convert " + inputs() + " --temp " + folder_ / "temp" + kSmall + output();
-    }
-    /// Runs a conversion on three ranks, one of them in another environment.
-    Outcome with_fault(int rank, const std::string& fault) const {
-        const std::string script = folder_ / "rank.sh";
-        std::ofstream(script) << "#!/bin/sh\nif [ \"$OMPI_COMM_WORLD_RANK\" = " << rank
-                              << " ]; then ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" LUCARNE_FAULTS
-                                 "' LUCARNE_FAULT='"
-                              << fault << "'; export ASAN_OPTIONS LD_PRELOAD LUCARNE_FAULT; fi\nexec "
-                              << LUCARNE_BINARY << " " << convert() << "\n";
-        return shell(mpirun(3) + "sh " + script);
-    }
-    void expect_nothing_left(bool resumable = false) const {
-        for (const char* place : {"out", "temp"})
-            if (!resumable || place != std::string("temp"))
-                for (const auto& entry : std::filesystem::directory_iterator(folder_ / place))
-                    ADD_FAILURE() << entry.path() << " was left";
-    }
-    test::TemporaryFolder folder_;
-};
-
-/// Returns how often a text occurs.
-size_t times(const std::string& text, const std::string& part) {
-    size_t count = 0;
-    for (size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
-    return count;
-}
+using test::times;
 
 TEST_F(RankFaults, AKilledRankEndsAllAndLeavesNothing) {
     const std::string counted = folder_ / "calls";
@@ -75,44 +34,6 @@ TEST_F(RankFaults, AKilledRankEndsAllAndLeavesNothing) {
             EXPECT_NE(killed.output.find("signal 9"), std::string::npos) << killed.output;
             expect_nothing_left(true);
         }
-    }
-}
-
-TEST_F(RankFaults, AKilledConversionIsResumedToTheSameBytes) {
-    const Outcome one = lucarne("convert " + inputs() + kSmall + folder_ / "one.luc");
-    ASSERT_EQ(one.code, 0) << one.output;
-    const std::string expected = test::bytes_of(folder_ / "one.luc"), trace = folder_ / "trace";
-    ASSERT_EQ(with_fault(1, "trace:" + trace).code, 0);
-    std::filesystem::remove(output());
-    // A rank syncs the cache when it has written its payloads, which it builds in the last stage.
-    std::ifstream lines(trace);
-    int syncs = 0;
-    for (std::string name; std::getline(lines, name);) syncs += name == "fsync";
-    ASSERT_GT(syncs, 0);
-    const std::string in_last_stage = "kill-sync:" + std::to_string(syncs);
-    const Outcome killed = with_fault(1, in_last_stage);
-    ASSERT_NE(killed.code, 0) << killed.output;
-    const Outcome resumed = on_ranks(3, convert() + " --resume");
-    EXPECT_EQ(resumed.code, 0) << resumed.output;
-    EXPECT_NE(resumed.output.find("going on after 'normals'"), std::string::npos)
-        << killed.output << resumed.output;
-    EXPECT_TRUE(test::bytes_of(output()) == expected);
-    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "temp"));
-
-    // Another number of ranks begins anew, and a damaged file of one rank as well.
-    for (const int ranks : {3, 2}) {
-        std::filesystem::remove(output());
-        ASSERT_NE(with_fault(1, in_last_stage).code, 0);
-        if (ranks == 3)
-            for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "temp"))
-                if (entry.path().filename() == "points") {
-                    std::fstream(entry.path(), std::ios::binary | std::ios::in | std::ios::out)
-                        << "other bytes";
-                    break;
-                }
-        const Outcome again = on_ranks(ranks, convert() + " --resume");
-        EXPECT_EQ(again.code, 0) << again.output;
-        EXPECT_TRUE(test::bytes_of(output()) == expected) << ranks;
     }
 }
 

@@ -21,6 +21,8 @@ using Pass = std::function<Result<void>(const Visit&)>;
 /// Bytes behind each record of a ChunkStore with stations: u16, 1 + the index of the estimated station that
 /// saw the point, 0 if unknown.
 inline constexpr uint32_t kStationBytes = 2;
+/// Bytes of a step of the checksum of a chunk that came from other ranks.
+inline constexpr uint32_t kSummed = 256 << 10;
 
 /// The points of a build, sorted into chunks in one scratch file. Within a chunk they keep the order of the
 /// input, so that nothing depends on timing.
@@ -55,6 +57,10 @@ class ChunkStore {
     /// points; all ranks have it or none. `resumable`: the store will be saved.
     Result<void> fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
                       bool resumable, std::optional<CountGrid> counted);
+    /// Fills the store with this rank's share of the chunks that another number of ranks has made. `parts`:
+    /// those that are in this process; together the ranks have all. `all`: all chunks. A meeting.
+    Result<void> take_over(std::span<const ChunkStore* const> parts, std::span<const Chunk> all,
+                           const MemoryPlan& memory, Ranks& ranks);
     /// The chunks in this process; of the others only their cubes and counts are known.
     ChunkRange own() const { return own_ ? *own_ : ChunkRange{0, chunks_.size()}; }
     /// The rank that has a chunk.

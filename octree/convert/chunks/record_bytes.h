@@ -50,6 +50,7 @@ class ByteReader {
         return values;
     }
     bool sound() const { return sound_; }
+    size_t left() const { return sound_ ? rest_.size() : 0; }  ///< bytes
 
  private:
     void read(void* to, size_t bytes) {

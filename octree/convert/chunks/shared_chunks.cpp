@@ -3,6 +3,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "octree/cluster/rounds.h"
 #include "octree/convert/chunks/chunk_store.h"
 #include "octree/convert/chunks/inputs_changed.h"
 
@@ -10,10 +11,6 @@ namespace lucarne::octree {
 namespace {
 
 using Bytes = Ranks::Bytes;
-
-constexpr uint64_t kParcelShare = 4;  ///< the parcels of a round have this part of the buffers' memory
-constexpr uint64_t kLeastParcel = 64 << 10;
-constexpr uint32_t kSummed = 256 << 10;  ///< bytes of a step of a chunk's checksum
 
 template <class T>
 Bytes as_parcel(std::span<const T> values) {
@@ -49,24 +46,23 @@ class Delivery {
           stride_(schema.stride),
           first_(std::move(first_of_rank)),
           lanes_(std::move(lanes)),
-          most_(std::max(kLeastParcel, bytes / kParcelShare / ranks.count())) {
+          rounds_(ranks, bytes,
+                  [this](size_t sender, std::span<const std::byte> got) { return store(sender, got); }) {
         for (size_t rank = 0; rank < ranks.count(); ++rank)
             rank_of_.resize(first_[rank + 1], static_cast<uint32_t>(rank));
-        start_round();
     }
 
     Result<void> take(std::span<const std::byte> records) {
         for (size_t at = 0; at < records.size(); at += stride_) {
             const uint32_t chunk = chunk_of(&records[at]);
-            Bytes& parcel = parcels_[rank_of_[chunk]];
-            parcel.insert(parcel.end(), &records[at], &records[at] + stride_);
-            if (parcel.size() + stride_ > most_) LUCARNE_TRY(round(false));
+            const uint32_t rank = rank_of_[chunk];
+            rounds_.add(rank, records.subspan(at, stride_));
+            if (rounds_.room(rank) < stride_) LUCARNE_TRY(rounds_.next());
         }
         return {};
     }
     Result<void> finish() {
-        do LUCARNE_TRY(round(true));
-        while (!all_done_);
+        LUCARNE_TRY(rounds_.finish());
         for (const auto& sender : lanes_)
             for (const Lane& lane : sender)
                 if (lane.next != lane.end) return inputs_changed();
@@ -74,25 +70,6 @@ class Delivery {
     }
 
  private:
-    void start_round() {
-        parcels_.resize(ranks_.count());
-        for (Bytes& parcel : parcels_) {
-            parcel.reserve(most_ + 1);
-            parcel.assign(1, std::byte{0});
-        }
-    }
-    /// A parcel begins with a byte that tells whether it is the sender's last one.
-    Result<void> round(bool last) {
-        for (Bytes& parcel : parcels_) parcel[0] = std::byte{last};
-        LUCARNE_TRY(ranks_.exchange(parcels_, received_));
-        all_done_ = true;
-        for (size_t sender = 0; sender < received_.size(); ++sender) {
-            all_done_ = all_done_ && received_[sender][0] == std::byte{1};
-            LUCARNE_TRY(store(sender, std::span(received_[sender]).subspan(1)));
-        }
-        start_round();
-        return {};
-    }
     /// Writes the records of one sender, those of a chunk in one piece.
     Result<void> store(size_t sender, std::span<const std::byte> records) {
         const size_t own = first_[ranks_.rank()], count = records.size() / stride_;
@@ -132,10 +109,8 @@ class Delivery {
     uint32_t stride_;
     std::vector<size_t> first_;
     std::vector<std::vector<Lane>> lanes_;
-    uint64_t most_;                  ///< bytes of a parcel
     std::vector<uint32_t> rank_of_;  ///< by chunk
-    std::vector<Bytes> parcels_, received_;
-    bool all_done_ = false;
+    Rounds rounds_;
     std::vector<uint32_t> chunks_;
     std::vector<size_t> starts_;
     Bytes sorted_;

@@ -41,6 +41,14 @@ class SurfaceStore {
     static Result<SurfaceStore> restore(const ChunkStore& chunks, ScratchFile file,
                                         std::span<const std::byte> record);
     std::vector<std::byte> save() const;
+    /// What one of another number of ranks has estimated for its chunks.
+    struct Part {
+        const ChunkStore* chunks = nullptr;
+        const SurfaceStore* surface = nullptr;
+    };
+    /// Makes the store of chunks that were taken over from the same parts. A meeting.
+    static Result<SurfaceStore> take_over(std::span<const Part> parts, const ChunkStore& chunks,
+                                          ScratchFile file, const MemoryPlan& memory, Ranks& ranks);
     /// Flips the normals of one orientation component of a chunk.
     void turn(size_t chunk, uint32_t component);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cinttypes>
+#include <cstdio>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -24,6 +26,7 @@ constexpr const char* kSuffix = ".lucarne-work";
 constexpr const char* kIdentity = "identity";
 /// All files of a work folder; nothing else in it is touched.
 const std::array<std::string, 3> kFiles = {kJournal, "points", "normals"};
+constexpr uint64_t kMostRanks = 1 << 20;  ///< more are a damaged journal
 constexpr const char* kBusy = "another conversion to this cache is running";
 /// A record: its stage's name padded with zeros, the number of bytes, the checksum of the whole record, and
 /// the bytes.
@@ -48,7 +51,7 @@ uint64_t folder_bytes(const fs::path& folder) {
     return bytes;
 }
 
-std::string text_of(std::span<const std::byte> bytes) {
+std::string as_text(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -62,29 +65,36 @@ std::string difference(const std::string& before, const std::string& now) {
     return fmt::format("'{}' then, '{}' now", line(before, at.first), line(now, at.second));
 }
 
-/// Logs interrupted builds of other outputs. They are left alone: their owners may resume them.
-void report_others(const fs::path& temp_folder, const fs::path& own) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(temp_folder, error)) {
-        if (!entry.path().filename().string().ends_with(kSuffix) || entry.path() == own) continue;
-        if (!UpdateFile::open_private(entry.path() / kJournal, false, kBusy))
-            continue;  // just made, in use, or another user's
-        log::warn("{} holds {} of an interrupted conversion; resume that one with --resume, or remove it",
-                  entry.path().string(), bytes_text(folder_bytes(entry.path())));
-    }
+/// Reads what precedes the identity of a build: its output, and whose part of it this is.
+struct Owner {
+    std::string output;
+    Workspace::Part part;
+};
+std::optional<Owner> owner_of(const std::string& text) {
+    const size_t end = text.find('\n');
+    Owner owner{text.substr(0, end), {}};
+    if (end == std::string::npos ||
+        std::sscanf(text.c_str() + end, "\nrank %" SCNu64 " of %" SCNu64, &owner.part.rank,
+                    &owner.part.count) != 2 ||
+        owner.part.rank >= owner.part.count || owner.part.count > kMostRanks)
+        return std::nullopt;
+    return owner;
 }
 
 }  // namespace
 
 Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& output,
-                                  const std::string& identity, Resume resume, std::optional<size_t> rank) {
+                                  const std::string& identity, Resume resume, Part part) {
     Workspace work;
     work.temp_folder_ = temp_folder;
     if (resume == Resume::never) return work;
     std::error_code error;
-    std::string whole = fs::absolute(output, error).lexically_normal().string();
-    if (rank) whole += fmt::format("\nrank {}", *rank);
-    const auto hash = format::checksum(std::as_bytes(std::span(whole)));
+    work.output_ = fs::absolute(output, error).lexically_normal().string();
+    work.identity_ = identity;
+    work.part_ = part;
+    std::string name = work.output_;
+    if (part.count > 1) name += fmt::format("\nrank {} of {}", part.rank, part.count);
+    const auto hash = format::checksum(std::as_bytes(std::span(name)));
     const fs::path folder = temp_folder / fmt::format("{:016x}{}", hash, kSuffix);
     LUCARNE_TRY(ScratchFile::create(temp_folder));  // reports errors of the parent folder
     if (const auto own = make_private_folder(folder); !own) {
@@ -94,14 +104,60 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     LUCARNE_ASSIGN(work.journal_, UpdateFile::open_private(folder / kJournal, true, kBusy));
     work.folder_ = folder;
     work.resume_ = resume;
-    if (!rank) report_others(temp_folder, folder);  // ranks begin at different times
-    LUCARNE_TRY(work.start(whole + "\n" + identity, resume));
+    LUCARNE_TRY(work.start(text_of(work.output_, part, identity), resume));
     return work;
+}
+
+std::string Workspace::text_of(const std::string& output, Part part, const std::string& identity) {
+    return fmt::format("{}\nrank {} of {}\n{}", output, part.rank, part.count, identity);
+}
+
+std::vector<Workspace> Workspace::left_by_others() const {
+    std::vector<Workspace> left;
+    if (folder_.empty()) return left;
+    std::vector<fs::path> folders;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(temp_folder_, error))
+        if (entry.path().filename().string().ends_with(kSuffix) && entry.path() != folder_)
+            folders.push_back(entry.path());
+    std::ranges::sort(folders);
+    for (const fs::path& folder : folders) {
+        auto journal = UpdateFile::open_private(folder / kJournal, false, kBusy);
+        if (!journal) continue;  // just made, in use, or another user's
+        Workspace other;
+        other.journal_ = std::move(*journal);
+        auto records = other.read_journal();
+        const std::string text = records && !records->empty() ? as_text((*records)[0].bytes) : "";
+        const auto owner = owner_of(text);
+        if (!owner || owner->output != output_) {
+            if (part_.rank == 0)
+                log::warn(
+                    "{} holds {} of an interrupted conversion; resume that one with --resume, or remove it",
+                    folder.string(), bytes_text(folder_bytes(folder)));
+            continue;
+        }
+        if (owner->part.count == part_.count) continue;  // another rank is about to open it
+        other.temp_folder_ = temp_folder_;
+        other.folder_ = folder;
+        other.part_ = owner->part;
+        other.records_ = std::move(*records);
+        other.resume_ = resume_;
+        other.keep_ = resume_ == Resume::go_on && text == text_of(output_, owner->part, identity_);
+        if (other.keep_)
+            left.push_back(std::move(other));
+        else
+            log::warn("removed {} that an interrupted conversion by {} process(es) left",
+                      bytes_text(folder_bytes(folder)), owner->part.count);
+    }
+    return left;
 }
 
 Workspace& Workspace::operator=(Workspace&& other) noexcept {
     temp_folder_.swap(other.temp_folder_);
     folder_.swap(other.folder_);
+    output_.swap(other.output_);
+    identity_.swap(other.identity_);
+    std::swap(part_, other.part_);
     journal_.swap(other.journal_);
     records_.swap(other.records_);
     std::swap(end_, other.end_);
@@ -141,7 +197,7 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
     keep_ = resume == Resume::go_on;
     LUCARNE_ASSIGN(records_, read_journal());
     if (!records_.empty()) {
-        const std::string before = text_of(records_[0].bytes);
+        const std::string before = as_text(records_[0].bytes);
         const bool same = records_[0].stage == kIdentity && before == identity;
         if (keep_ && same && records_.size() > 1) {
             log::info("going on after '{}' of the interrupted conversion", records_.back().stage);

@@ -25,12 +25,20 @@ enum class Resume {
 /// refers to, so a stage whose data a power cut destroyed is detected and run again.
 class Workspace {
  public:
+    /// Which process of how many a folder belongs to. Each has a folder of its own, also for each number of
+    /// them.
+    struct Part {
+        uint64_t rank = 0, count = 1;
+    };
     /// `identity` says what is built from which inputs with which options; leftovers of another build are not
-    /// used. Of several ranks that build one output each has a folder of its own. Errors: another process is
-    /// building `output`; no folder can be made.
+    /// used. Errors: another process is building `output`; no folder can be made.
     static Result<Workspace> open(const std::filesystem::path& temp_folder,
                                   const std::filesystem::path& output, const std::string& identity,
-                                  Resume resume, std::optional<size_t> rank = {});
+                                  Resume resume, Part part);
+    /// Opens the folders that other numbers of processes left of the same output, as far as no other process
+    /// has them open. Those of another build, and all if the build is not to go on, are removed instead. Call
+    /// it when all processes have opened their own folders.
+    std::vector<Workspace> left_by_others() const;
     Workspace(Workspace&& other) noexcept { *this = std::move(other); }
     Workspace& operator=(Workspace&& other) noexcept;
     /// Removes the folder, unless `go_on` was given, a stage was finished, and the output was not.
@@ -38,6 +46,7 @@ class Workspace {
 
     /// Opens a scratch file. `kept`: with what an interrupted build wrote to it.
     Result<ScratchFile> scratch(const std::string& name, bool kept) const;
+    Part part() const { return part_; }
     /// Whether a resumed build may want the scratch files.
     bool resumable() const { return journal_.has_value(); }
     /// Returns the record of a finished stage, null if it was not finished.
@@ -54,12 +63,15 @@ class Workspace {
         uint64_t offset = 0;  ///< in the journal
     };
     Workspace() = default;
+    static std::string text_of(const std::string& output, Part part, const std::string& identity);
     Result<std::vector<Record>> read_journal() const;
     Result<void> start(const std::string& identity, Resume resume);
     Result<void> append(Record record);
     void tell_at_interrupt() const;
 
     std::filesystem::path temp_folder_, folder_;  ///< `folder_` is empty if the scratch files are nameless
+    std::string output_, identity_;
+    Part part_;
     std::optional<UpdateFile> journal_;
     std::vector<Record> records_;
     uint64_t end_ = 0;

@@ -1,0 +1,141 @@
+// A conversion by several ranks goes on after it was killed, to the same bytes.
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/cluster/rank_faults.h"
+
+namespace lucarne {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::kSmall;
+using test::lucarne;
+using test::on_ranks;
+using test::Outcome;
+
+class ResumedRanks : public test::RankFaults {
+ protected:
+    void SetUp() override {
+        RankFaults::SetUp();
+        if (!IsSkipped()) convert_alone();
+    }
+    void convert_alone() {
+        const Outcome one = lucarne("convert " + inputs() + kSmall + folder_ / "one.luc --overwrite");
+        ASSERT_EQ(one.code, 0) << one.output;
+        expected_ = test::bytes_of(folder_ / "one.luc");
+    }
+    /// Kills rank 1 of three, or the only one, in the last stage: a rank syncs the cache when it has written
+    /// its payloads, which it builds in the last stage.
+    void interrupt(int count = 3) {
+        const std::string trace = folder_ / ("trace" + std::to_string(count));
+        const int rank = count > 1 ? 1 : 0;
+        if (!fs::exists(trace)) {
+            const Outcome traced = with_fault(rank, "trace:" + trace, "", count);
+            ASSERT_EQ(traced.code, 0) << traced.output;
+            fs::remove(output());
+        }
+        std::ifstream lines(trace);
+        int syncs = 0;
+        for (std::string name; std::getline(lines, name);) syncs += name == "fsync";
+        if (count == 1) syncs = 1;  // it syncs the folder as well, when the cache has its name
+        ASSERT_GT(syncs, 0);
+        const Outcome killed = with_fault(rank, "kill-sync:" + std::to_string(syncs), "", count);
+        ASSERT_NE(killed.code, 0) << killed.output;
+        ASSERT_FALSE(fs::exists(output()));
+    }
+    /// Goes on with so many ranks; 0: without MPI.
+    Outcome resume(int count) const {
+        const std::string what = convert() + " --resume";
+        return count > 0 ? on_ranks(count, what) : lucarne(what);
+    }
+    /// `kept`: what an earlier conversion finished, empty if this one begins anew.
+    void expect_resumed(const Outcome& resumed, const std::string& kept) {
+        ASSERT_EQ(resumed.code, 0) << resumed.output;
+        EXPECT_NE(resumed.output.find(kept), std::string::npos) << resumed.output;
+        EXPECT_TRUE(test::bytes_of(output()) == expected_) << resumed.output;
+        EXPECT_TRUE(fs::is_empty(folder_ / "temp")) << resumed.output;
+        fs::remove(output());
+    }
+    /// The work folders that a conversion has left, each with its points.
+    std::vector<fs::path> left() const {
+        std::vector<fs::path> found;
+        for (const auto& entry : fs::directory_iterator(folder_ / "temp"))
+            if (fs::exists(entry.path() / "points")) found.push_back(entry.path());
+        return found;
+    }
+    std::string expected_;
+};
+
+TEST_F(ResumedRanks, GoOnWithTheSameNumber) {
+    interrupt();
+    expect_resumed(resume(3), "going on after 'normals'");
+}
+
+TEST_F(ResumedRanks, GoOnWithAnotherNumber) {
+    for (const int count : {2, 4, 1, 0}) {
+        interrupt();
+        ASSERT_EQ(left().size(), 3u);
+        expect_resumed(resume(count), "going on after 'normals' of the interrupted conversion by 3 ranks");
+    }
+}
+
+TEST_F(ResumedRanks, GoOnWithWhatOneProcessLeft) {
+    interrupt(1);
+    expect_resumed(resume(3), "going on after 'normals' of the interrupted conversion by one process");
+}
+
+TEST_F(ResumedRanks, GoOnAgainWhenTheyAreKilledWhileTheyTakeOver) {
+    const std::string counted = folder_ / "calls";
+    interrupt();
+    ASSERT_EQ(with_fault(1, "count:" + counted, "--resume", 2).code, 0);
+    fs::remove(output());
+    const int calls = std::stoi(test::bytes_of(counted));
+    ASSERT_GT(calls, 10);
+    for (const int at : {calls / 4, calls / 2}) {
+        interrupt();
+        EXPECT_NE(with_fault(1, "kill:" + std::to_string(at), "--resume", 2).code, 0);
+        expect_resumed(resume(at == calls / 4 ? 2 : 4), "going on after");
+    }
+}
+
+TEST_F(ResumedRanks, BeginAnewWhereOneHasLostItsScratch) {
+    for (const int count : {3, 2}) {
+        interrupt();
+        ASSERT_EQ(left().size(), 3u);
+        fs::remove_all(left()[1]);
+        expect_resumed(resume(count),
+                       count == 3 ? "1 of 3 ranks have lost what stage 'scan' made" : "are lost or damaged");
+    }
+}
+
+TEST_F(ResumedRanks, BeginAnewWhereAFileIsDamaged) {
+    for (const int count : {3, 2}) {
+        interrupt();
+        ASSERT_EQ(left().size(), 3u);
+        std::fstream(left()[0] / "points", std::ios::binary | std::ios::in | std::ios::out) << "other bytes";
+        expect_resumed(resume(count),
+                       count == 3 ? "have lost what stage 'chunk' made" : "are lost or damaged");
+    }
+}
+
+TEST_F(ResumedRanks, BeginAnewWhenAnInputHasChanged) {
+    interrupt();
+    fs::last_write_time(folder_ / "house.las", fs::file_time_type::clock::now() + std::chrono::hours(1));
+    convert_alone();
+    expect_resumed(resume(2), "removed ");
+}
+
+TEST_F(ResumedRanks, RemoveWhatOthersLeftIfTheyAreNotToGoOn) {
+    interrupt();
+    const Outcome again = on_ranks(2, convert());
+    expect_resumed(again, "removed ");
+}
+
+}  // namespace
+}  // namespace lucarne
