@@ -294,6 +294,7 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
                    Unifier::create(options.inputs, options.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(inputs));
     warn_of_differences(inputs);
+    LUCARNE_TRY(check_descriptions(inputs));
     const auto added_bytes = [](std::optional<bool> normals) -> uint32_t {
         return normals ? (*normals ? 7 : 4) : 0;  // normal_oct, area and edge_line
     };

@@ -9,6 +9,8 @@
 #include "io/core/log.h"
 #include "io/formats/merged_info.h"
 #include "io/formats/scan.h"
+#include "octree/cache/format.h"
+#include "octree/cache/metadata.h"
 
 namespace lucarne::octree {
 namespace {
@@ -106,6 +108,15 @@ void adjust_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& 
               scan.path, io::color_white(scan.color_bits), io::color_white(contents.color_bits));
     scan.color_bits = contents.color_bits;
     scan.notes.color_bits = contents.color_bits;
+}
+
+Result<void> check_descriptions(const Unifier& inputs) {
+    const size_t bytes = metadata_text(header_of(inputs, {}, inputs.schema())).size();
+    if (bytes <= format::kMaxMetadata) return {};
+    return bad_arguments("inputs",
+                         fmt::format("the headers of {} files need {} bytes, and a cache can hold {}",
+                                     inputs.inputs(), bytes, format::kMaxMetadata),
+                         "convert them to several caches");
 }
 
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {

@@ -37,6 +37,10 @@ void widen_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& s
 void adjust_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& schema,
                    const io::Contents& contents);
 
+/// Errors: the descriptions of the inputs are more than the metadata of a cache can hold. Tells it before the
+/// work, not when the cache is written.
+Result<void> check_descriptions(const Unifier& inputs);
+
 /// Returns the header of a cache of these inputs with records of `schema`.
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema);
 

@@ -11,6 +11,7 @@
 #include "octree/edit/rewrite.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/edge_line.h"
+#include "octree/tree/scan_number.h"
 #include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {
@@ -45,9 +46,16 @@ class CacheSchema final : public io::PointSource {
     io::ScanInfo info_;
 };
 
-/// Returns the unified schema with the attributes that the cache's build added.
-io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache) {
+/// Returns the unified schema with the attributes that the cache's build added. `scans`: of the cache with
+/// the inputs, for the width of their numbers.
+io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache, size_t scans) {
+    const io::Attribute* before = cache.find(io::names::scan);
+    const bool wide = scans > kMostShortScans || (before && before->type == io::ScalarType::u32);
     io::Schema schema = inputs.schema();
+    schema.attributes.clear();
+    schema.stride = static_cast<uint32_t>(io::position_bytes(schema.position));
+    for (const auto& a : inputs.schema().attributes)
+        schema.add(a.name, wide && a.name == io::names::scan ? io::ScalarType::u32 : a.type, a.components);
     for (const auto name : {io::names::normal_oct, io::names::area, io::names::edge_line})
         if (const auto* added = cache.find(name)) schema.add(added->name, added->type, added->components);
     return schema;
@@ -62,7 +70,7 @@ Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_
         const auto* normal = schema.find(io::names::normal_oct);
         const auto* area = schema.find(io::names::area);
         const auto* edge = schema.find(io::names::edge_line);
-        const auto* scan = schema.find(io::names::scan);
+        const ScanNumber scan(schema);
         std::vector<std::byte> records;
         return pass_over_inputs(inputs, {0, inputs.inputs()},
                                 batch_bytes)([&](std::span<const std::byte> batch) -> Result<void> {
@@ -73,8 +81,7 @@ Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_
                 if (area) io::store(record + area->offset, kNoArea);
                 if (edge) io::store(record + edge->offset, kNoEdge);
                 // The unifier counts the cache as input 0.
-                const auto input = io::load<uint16_t>(record + scan->offset);
-                io::store(record + scan->offset, static_cast<uint16_t>(scans_before + input - 1));
+                scan.store(record, static_cast<uint32_t>(scans_before + scan.of(record) - 1));
             }
             return visit(records);
         });
@@ -108,9 +115,10 @@ Result<std::vector<uint64_t>> count_by_node(const CacheFile& cache, const Source
 Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, const ScanFacts& facts) {
     const auto& before = cache.header();
     SourceHeader header = before;
-    header.schema = whole_schema(inputs, before.schema);
+    const size_t scans = before.scans.size() + inputs.inputs() - 1;
+    header.schema = whole_schema(inputs, before.schema, scans);
     if (header.schema != before.schema) header.layouts.push_back(before.schema);
-    if (header.layouts.size() > kMostLayouts || before.scans.size() + inputs.inputs() - 1 > UINT16_MAX)
+    if (header.layouts.size() > kMostLayouts || scans > kMostScans)
         return rejected(cache.file().path().string(), "was appended to too often",
                         "convert all scans together");
     LUCARNE_ASSIGN(header.root, grown_root(before.root, facts.min, facts.max));
@@ -150,12 +158,12 @@ std::string file_name(const io::ScanInfo& scan) {
 
 Result<bool> has_points_of(const CacheFile& cache, size_t scan) {
     const auto& schema = cache.header().schema;
-    const auto* number = schema.find(io::names::scan);
+    const ScanNumber number(schema);
     if (!number) return true;  // all points are of its only scan
     for (uint32_t node = 0; node < cache.nodes().size(); ++node) {
         LUCARNE_ASSIGN(const NodeData data, cache.load(node));
         for (size_t i = 0; i < data.count; ++i)
-            if (io::load<uint16_t>(&data.records[i * schema.stride + number->offset]) == scan) return true;
+            if (number.of(&data.records[i * schema.stride]) == scan) return true;
     }
     return false;
 }

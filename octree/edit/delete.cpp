@@ -6,6 +6,7 @@
 
 #include "io/core/progress.h"
 #include "octree/edit/rewrite.h"
+#include "octree/tree/scan_number.h"
 
 namespace lucarne::octree {
 namespace {
@@ -18,19 +19,18 @@ bool inside(const Box& box, const glm::dvec3& p) {
 class Selector {
  public:
     Selector(const Selection& selection, const io::Schema& schema)
-        : selection_(selection), schema_(schema), scan_(schema_.find(io::names::scan)) {}
+        : selection_(selection), schema_(schema), scan_(schema_) {}
     Selector(const Selector& other) : Selector(other.selection_, other.schema_) {}
 
     bool operator()(const std::byte* record) const {
         if (selection_.box && !inside(*selection_.box, io::position_of(schema_, record))) return false;
-        const uint16_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : uint16_t{0};
-        return !selection_.scan || *selection_.scan == scan;
+        return !selection_.scan || *selection_.scan == scan_.of(record);
     }
 
  private:
     Selection selection_;
     io::Schema schema_;
-    const io::Attribute* scan_;
+    ScanNumber scan_;
 };
 
 struct Found {

@@ -21,7 +21,7 @@ struct EditOptions {
 /// Which points to delete: those that match every given criterion.
 struct Selection {
     std::optional<Box> box;        ///< in the file's unit, including its faces
-    std::optional<uint16_t> scan;  ///< index into the cache's scans
+    std::optional<uint32_t> scan;  ///< index into the cache's scans
 };
 
 struct EditReport {

@@ -91,12 +91,12 @@ void Exporter::find_narrow_colours() {
     const auto& header = source_.header();
     const auto* color = schema_.find(io::names::color);
     if (!color || color->type != io::ScalarType::u16 || color->components != 3) return;
-    const auto* scan = header.schema.find(io::names::scan);
-    if (!scan || scan->type != io::ScalarType::u16) return;
+    const ScanNumber scan(header.schema);
+    if (!scan) return;
     std::vector<bool> narrow;
     for (const auto& each : header.scans) narrow.push_back(each.color_bits <= 8);
     if (std::ranges::adjacent_find(narrow, std::not_equal_to{}) == narrow.end()) return;  // all are alike
-    spread_ = {std::move(narrow), scan->offset, color->offset};
+    spread_ = {std::move(narrow), scan, color->offset};
     info_.color_bits = 16;
 }
 
@@ -140,7 +140,7 @@ void Exporter::append(const NodeData& data, size_t first, size_t count, uint64_t
 
 void Exporter::spread_colour(const std::byte* in, std::byte* out) const {
     constexpr uint32_t kFactor = 65535 / 255;
-    const auto scan = io::load<uint16_t>(in + spread_.scan);
+    const uint32_t scan = spread_.scan.of(in);
     if (scan >= spread_.narrow.size() || !spread_.narrow[scan]) return;
     for (std::byte* color = out + spread_.color; color < out + spread_.color + 6; color += 2)
         io::store(color, static_cast<uint16_t>(std::min(io::load<uint16_t>(color) * kFactor, 65535u)));

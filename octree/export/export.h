@@ -8,6 +8,7 @@
 
 #include "io/formats/scan.h"
 #include "octree/tree/point_normals.h"
+#include "octree/tree/scan_number.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {
@@ -88,9 +89,9 @@ class Exporter {
     io::ScanInfo info_;
     std::vector<Copy> copies_;
     struct Spread {
-        std::vector<bool> narrow;  ///< scans whose colours are spread over 16 bits; empty: none
-        /// Offsets of these attributes in the cache's records and in the exporter's.
-        uint32_t scan = 0, color = 0;
+        std::vector<bool> narrow;       ///< scans whose colours are spread over 16 bits; empty: none
+        ScanNumber scan{io::Schema{}};  ///< in the cache's records
+        uint32_t color = 0;             ///< its offset in the exporter's
     } spread_;
     PointNormals normals_;
     std::optional<io::Attribute> normal_;  ///< in the exporter's schema, if it is written from normals_

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "io/points.h"
+#include "octree/tree/scan_number.h"
 
 namespace lucarne::octree {
 
@@ -36,20 +37,18 @@ struct StationKey {
 class StationKeys {
  public:
     /// `schema` outlives this object.
-    explicit StationKeys(const io::Schema& schema) {
-        const auto* scan = schema.find(io::names::scan);
-        if (scan && scan->type == io::ScalarType::u16 && scan->components == 1) scan_ = scan;
+    explicit StationKeys(const io::Schema& schema) : scan_(schema) {
         const auto* source = schema.find(io::names::point_source_id);
         if (source && source->type == io::ScalarType::u16 && source->components == 1) source_ = source;
     }
     bool has_stations() const { return source_; }
     StationKey of(const std::byte* record) const {
-        return {scan_ ? io::load<uint16_t>(record + scan_->offset) : 0u,
-                source_ ? io::load<uint16_t>(record + source_->offset) : 0u};
+        return {scan_.of(record), source_ ? io::load<uint16_t>(record + source_->offset) : 0u};
     }
 
  private:
-    const io::Attribute *scan_ = nullptr, *source_ = nullptr;
+    ScanNumber scan_;
+    const io::Attribute* source_ = nullptr;
 };
 
 /// Returns the entry that applies to the points of a station, null if there is none. `colours` is sorted by

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/points.h"
+#include "octree/tree/scan_number.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {
@@ -30,7 +31,7 @@ class StationIds {
                 by_id_[station.scan].emplace(0, static_cast<int32_t>(stations_.size()));
             stations_.push_back(station.position);
         }
-        if (by_id_.size() > 1) scan_ = schema.find(io::names::scan);
+        if (by_id_.size() > 1) scan_.emplace(schema);
         source_ = schema.find(io::names::point_source_id);
     }
 
@@ -39,7 +40,7 @@ class StationIds {
     size_t stated() const { return stated_; }
     /// Returns the index into stations(), -1 if unknown.
     int32_t of(const std::byte* record) const {
-        const size_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : 0;
+        const size_t scan = scan_ ? scan_->of(record) : 0;
         if (scan >= by_id_.size()) return -1;
         const auto& ids = by_id_[scan];
         if (ids.size() == 1) return ids.begin()->second;
@@ -55,7 +56,8 @@ class StationIds {
     std::vector<std::map<uint32_t, int32_t>> by_id_;  ///< of each scan: station id to index
     std::vector<glm::dvec3> stations_;
     size_t stated_ = 0;
-    const io::Attribute *scan_ = nullptr, *source_ = nullptr;
+    std::optional<ScanNumber> scan_;  ///< empty: all records are of one scan
+    const io::Attribute* source_ = nullptr;
 };
 
 }  // namespace lucarne::octree

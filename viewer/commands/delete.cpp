@@ -18,7 +18,7 @@ namespace {
 struct DeleteOptions {
     octree::EditOptions edit;
     std::vector<double> box;
-    std::vector<uint16_t> scan;  ///< none or one
+    std::vector<uint32_t> scan;  ///< none or one
     std::string memory = "2G", json;
 };
 

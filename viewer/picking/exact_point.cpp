@@ -10,6 +10,7 @@
 
 #include "gi/scene/colour_map.h"
 #include "octree/tree/attributes.h"
+#include "octree/tree/scan_number.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -135,8 +136,9 @@ std::optional<PointField> field_of(const octree::SourceHeader& header, const io:
         if (code >= 0 && code <= 255)
             field.value += fmt::format(" {}", gi::class_name(static_cast<uint8_t>(code)));
     }
-    if (attribute.name == io::names::scan && attribute.type == io::ScalarType::u16)
-        if (const std::string name = file_name(header.scans, io::load<uint16_t>(at)); !name.empty())
+    if (attribute.name == io::names::scan)
+        if (const std::string name = file_name(header.scans, octree::ScanNumber(header.schema).of(record));
+            !name.empty())
             field.value.append(" ").append(name);
     return field;
 }

@@ -2,19 +2,21 @@
 
 #include <map>
 
+#include "octree/tree/scan_number.h"
+
 namespace lucarne::octree {
 namespace {
 
 /// Tells the station of points that come one after the other, each scan's in its order.
 class StationCounter {
  public:
-    StationCounter(const io::Attribute* scan, const std::vector<StationSpan>& spans) : scan_(scan) {
+    StationCounter(const ScanNumber& scan, const std::vector<StationSpan>& spans) : scan_(scan) {
         for (const StationSpan& span : spans) of_scan_[span.scan].spans.push_back(span);
     }
 
     /// Returns what is stored for the next record: 1 + the index of its station, 0 if unknown.
     uint16_t next(const std::byte* record) {
-        const uint16_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : uint16_t{0};
+        const uint32_t scan = scan_.of(record);
         if (!last_ || scan != last_scan_) {
             const auto found = of_scan_.find(scan);
             last_ = found == of_scan_.end() ? &none_ : &found->second;
@@ -33,18 +35,18 @@ class StationCounter {
         uint64_t points = 0;
         size_t span = 0;  ///< the first that has not ended
     };
-    const io::Attribute* scan_;
+    ScanNumber scan_;
     std::map<uint32_t, Progress> of_scan_;
     Progress none_;
     Progress* last_ = nullptr;
-    uint16_t last_scan_ = 0;
+    uint32_t last_scan_ = 0;
 };
 
 }  // namespace
 
 Pass with_point_stations(Pass pass, const io::Schema& schema, const std::vector<StationSpan>& spans) {
     return [pass = std::move(pass), schema, spans](const Visit& visit) -> Result<void> {
-        StationCounter counter(schema.find(io::names::scan), spans);
+        StationCounter counter(ScanNumber(schema), spans);
         std::vector<std::byte> wider;
         return pass([&](std::span<const std::byte> records) -> Result<void> {
             const size_t from = schema.stride, to = from + kStationBytes;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "octree/cache/format.h"
+#include "octree/tree/scan_number.h"
 #include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {
@@ -57,8 +58,8 @@ std::optional<ScalarType> common_type(ScalarType a, ScalarType b) {
 
 Result<Unifier> Unifier::create(std::vector<const io::PointSource*> sources, bool replace_normals) {
     if (sources.empty()) return bad_arguments("inputs", "there are none");
-    if (sources.size() > 0xffff)
-        return bad_arguments("inputs", fmt::format("{} are more than 65535", sources.size()));
+    if (sources.size() > kMostScans)
+        return bad_arguments("inputs", fmt::format("{} are more than {}", sources.size(), kMostScans));
     Unifier unifier;
     unifier.sources_ = std::move(sources);
     unifier.replace_normals_ = replace_normals;
@@ -122,7 +123,10 @@ Result<void> Unifier::unify_attributes() {
             known->type = *type;
         }
     for (const auto& a : all) schema_.add(a.name, a.type, a.components);
-    if (inputs() > 1) schema_.add(std::string(io::names::scan), ScalarType::u16);
+    if (inputs() > 1) {
+        const bool few = inputs() <= kMostShortScans;
+        schema_.add(std::string(io::names::scan), few ? ScalarType::u16 : ScalarType::u32);
+    }
     return {};
 }
 
@@ -131,9 +135,11 @@ std::span<const std::byte> Unifier::convert(size_t input, const io::PointBatch& 
     if (inputs() == 1 && maps_[input].identical())
         return std::span(batch.bytes).first(batch.count * schema_.stride);
     maps_[input].convert(batch.bytes.data(), batch.count, storage);
-    if (const auto* scan = inputs() > 1 ? schema_.find(io::names::scan) : nullptr)
+    if (inputs() > 1) {
+        const ScanNumber scan(schema_);
         for (size_t i = 0; i < batch.count; ++i)
-            io::store(&storage[i * schema_.stride + scan->offset], static_cast<uint16_t>(input));
+            scan.store(&storage[i * schema_.stride], static_cast<uint32_t>(input));
+    }
     return storage;
 }
 

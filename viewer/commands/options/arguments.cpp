@@ -135,7 +135,7 @@ template Argument Arguments::add(const std::string&, std::optional<uint32_t>&, c
 template Argument Arguments::add(const std::string&, std::optional<uint64_t>&, const std::string&);
 template Argument Arguments::add(const std::string&, std::optional<double>&, const std::string&);
 template Argument Arguments::add(const std::string&, std::vector<std::vector<double>>&, const std::string&);
-template Argument Arguments::add(const std::string&, std::vector<uint16_t>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::vector<uint32_t>&, const std::string&);
 template Argument Arguments::add(const std::string&, std::vector<int>&, const std::string&);
 template Argument Arguments::add(const std::string&, std::vector<double>&, const std::string&);
 template Argument Arguments::add(const std::string&, std::vector<std::string>&, const std::string&);

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <glm/vec2.hpp>
 
+#include "octree/tree/scan_number.h"
+
 namespace lucarne::viewer {
 namespace {
 
@@ -56,15 +58,12 @@ std::vector<uint32_t> nodes_in(const octree::NodeSource& source, const Frame& fr
 class ColorReader {
  public:
     explicit ColorReader(const octree::SourceHeader& header)
-        : color_(header.schema.find(io::names::color)),
-          scan_(header.schema.find(io::names::scan)),
-          scans_(header.scans) {
+        : color_(header.schema.find(io::names::color)), scan_(header.schema), scans_(header.scans) {
         if (color_ && color_->components != 3) color_ = nullptr;
-        if (scan_ && scan_->type != io::ScalarType::u16) scan_ = nullptr;  // the cache is damaged
     }
     std::array<uint8_t, 3> at(const std::byte* record) const {
         std::array<uint8_t, 3> rgb{200, 200, 200};
-        const size_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : 0;
+        const size_t scan = scan_.of(record);
         const double white = io::color_white(scan < scans_.size() ? scans_[scan].color_bits : 8);
         for (size_t c = 0; color_ && c < 3; ++c) {
             const double value =
@@ -75,7 +74,8 @@ class ColorReader {
     }
 
  private:
-    const io::Attribute *color_, *scan_;
+    const io::Attribute* color_;
+    octree::ScanNumber scan_;
     std::span<const io::ScanInfo> scans_;
 };
 
