@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/bench/machine.h"
 #include "tests/octree/convert/catalogue.h"
 
 namespace {
@@ -21,6 +22,7 @@ double peak_mib() {
 
 int main(int argc, char** argv) {
     using Clock = std::chrono::steady_clock;
+    fmt::print("{}\n", lucarne::bench::circumstances());
     double scale = 1;
     for (int i = 1; i + 1 < argc; ++i)
         if (std::string(argv[i]) == "--scale") scale = std::atof(argv[i + 1]);
