@@ -94,9 +94,9 @@ std::vector<QuickSurface> quick_surface(std::span<const glm::dvec3> points, cons
     // In units of the root cube, floats can represent the squares of any cloud's distances.
     const double scale = 1 / root.size;
     const Cube shifted{root.min - glm::dvec3(kShift * root.size), root.size * (1 + 2 * kShift)};
-    std::array<std::optional<Curve>, 2> found;
-    parallel_ranges(2, 1, [&](size_t i, size_t) { found[i].emplace(points, i == 0 ? root : shifted); });
-    const std::array<const Curve*, 2> curves = {&*found[0], &*found[1]};
+    std::array<std::optional<Curve>, 2> made;
+    parallel_ranges(2, 1, [&](size_t i, size_t) { made[i].emplace(points, i == 0 ? root : shifted); });
+    const std::array<const Curve*, 2> curves = {&*made[0], &*made[1]};
     std::vector<QuickSurface> surface(points.size());
     std::vector<float> neighbours_area(points.size());
     std::vector<uint32_t> near(points.size() * search.neighbours);  // `neighbours` for each point

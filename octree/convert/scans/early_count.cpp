@@ -14,7 +14,8 @@ namespace {
 /// way than the records do. Empty if no record can be there.
 std::optional<glm::dvec3> as_read(const io::Schema& schema, const glm::dvec3& corner) {
     if (schema.position == io::PositionType::f64) return corner;
-    std::array<std::byte, io::position_bytes(io::PositionType::f32)> record;
+    std::array<std::byte, io::position_bytes(io::PositionType::f64)>
+        record{};  // compilers see no shorter one
     for (int axis = 0; axis < 3; ++axis) {
         std::byte* at = &record[4 * static_cast<size_t>(axis)];
         if (schema.position == io::PositionType::f32) {
