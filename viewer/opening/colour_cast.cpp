@@ -13,8 +13,8 @@ namespace lucarne::viewer {
 namespace {
 
 /// The share that counts as cast, by the ratio of the strongest component to the weakest: paint rarely
-/// colours a whole scan as strongly as tungsten light does. Chosen on four scans: two of white rooms, one of
-/// yellow walls, and a cellar photographed by tungsten light, whose ceiling was red in its own light with .6.
+/// colours a whole scan as strongly as tungsten light does. .6 was chosen on scans of white rooms
+/// and of yellow walls, .85 on a cellar photographed by tungsten light, whose ceiling was red with .6.
 constexpr double kShareOfWeak = .6, kShareOfStrong = .85, kWeak = 2, kStrong = 4;
 constexpr double kWeakest = .04;  ///< component's square over that of the strongest
 
