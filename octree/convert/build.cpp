@@ -277,7 +277,7 @@ Result<void> open_workspace(const BuildOptions& options, const Unifier& inputs, 
     LUCARNE_ASSIGN(held.work, Workspace::open(folder, options.output, identity, options.resume,
                                               {ranks.rank(), ranks.count()}));
     LUCARNE_TRY(meet(ranks));
-    held.left = held.work->left_by_others();
+    LUCARNE_ASSIGN(held.left, held.work->left_by_others());
     return take_over(*held.work, held.left, ranks, inputs, options, memory);
 }
 

@@ -35,6 +35,7 @@ struct Part {
 /// What others are told of it.
 struct Offer {
     uint64_t rank = 0, count = 0;
+    uint64_t sound = 0;           ///< 1: has finished chunks; what follows is about them
     uint64_t first = 0, end = 0;  ///< its chunks
     uint64_t normals = 0;         ///< 1: has them
 };
@@ -67,26 +68,43 @@ Result<Part> restore(Workspace& work, const Unifier& inputs, const BuildOptions&
 
 /// The parts of one build, by the rank that had them.
 struct Build {
-    std::vector<size_t> holders;  ///< the rank that has a part now
+    std::vector<size_t> holders;  ///< the rank that has a sound part now
     std::vector<Offer> offers;
+    std::vector<bool> found;  ///< there is a part, sound or not
     bool normals = true;
 
-    explicit Build(uint64_t count) : holders(count, kNowhere), offers(count) {}
-    /// Returns the ranks whose parts are missing.
-    std::vector<size_t> missing() const {
+    explicit Build(uint64_t count) : holders(count, kNowhere), offers(count), found(count) {}
+    /// Returns the ranks that have no sound part.
+    std::vector<size_t> unsound() const {
         std::vector<size_t> ranks;
         for (size_t rank = 0; rank < holders.size(); ++rank)
             if (holders[rank] == kNowhere) ranks.push_back(rank);
         return ranks;
     }
+    /// Returns the ranks that have no part at all.
+    std::vector<size_t> missing() const {
+        std::vector<size_t> ranks;
+        for (size_t rank = 0; rank < found.size(); ++rank)
+            if (!found[rank]) ranks.push_back(rank);
+        return ranks;
+    }
 };
 
-/// Tells all ranks what each has. Returns the builds by their number of ranks. A meeting.
-Result<std::map<uint64_t, Build>> compare(Ranks& ranks, const std::vector<Part>& parts) {
+/// Tells all ranks what each has. Returns the builds by their number of ranks. Two sound parts of the same
+/// rank have the same bytes. A meeting.
+Result<std::map<uint64_t, Build>> compare(Ranks& ranks, const Workspace& work,
+                                          const std::vector<Workspace>& left,
+                                          const std::vector<Part>& parts) {
     ByteWriter writer;
+    const auto found = [&](const Workspace& known) {
+        Offer offer{.rank = known.part().rank, .count = known.part().count};
+        if (known.finished("scan")) writer.put(offer);
+    };
+    found(work);
+    for (const Workspace& other : left) found(other);
     for (const Part& part : parts) {
         const auto [rank, count] = part.work->part();
-        writer.put(Offer{rank, count, part.chunks.own().first, part.chunks.own().end,
+        writer.put(Offer{rank, count, 1, part.chunks.own().first, part.chunks.own().end,
                          part.surface ? uint64_t{1} : 0});
     }
     LUCARNE_ASSIGN(const auto all, share(ranks, writer.take()));
@@ -95,7 +113,8 @@ Result<std::map<uint64_t, Build>> compare(Ranks& ranks, const std::vector<Part>&
         for (ByteReader reader(all[holder]); reader.left() > 0;) {
             const auto offer = reader.get<Offer>();
             Build& build = builds.try_emplace(offer.count, offer.count).first->second;
-            if (build.holders[offer.rank] != kNowhere) continue;
+            build.found[offer.rank] = true;
+            if (offer.sound == 0 || build.holders[offer.rank] != kNowhere) continue;
             build.holders[offer.rank] = holder;
             build.offers[offer.rank] = offer;
             build.normals = build.normals && offer.normals;
@@ -107,7 +126,7 @@ Result<std::map<uint64_t, Build>> compare(Ranks& ranks, const std::vector<Part>&
 const Build* best(const std::map<uint64_t, Build>& builds) {
     const Build* found = nullptr;
     for (const auto& [count, build] : builds) {
-        bool whole = build.missing().empty();
+        bool whole = build.unsound().empty();
         for (size_t rank = 0; rank + 1 < count && whole; ++rank)
             whole = build.offers[rank].end == build.offers[rank + 1].first;
         if (whole && (!found || (build.normals && !found->normals))) found = &build;
@@ -120,7 +139,19 @@ std::string why_not(const std::map<uint64_t, Build>& builds) {
         return "it has finished no stage that can be taken over, or all its files are damaged";
     const auto& [count, build] = *builds.begin();
     return fmt::format("of {}, the scratch files of rank {} are lost or damaged", ranks_text(count),
-                       fmt::join(build.missing(), ", "));
+                       fmt::join(build.unsound(), ", "));
+}
+
+/// Errors: a build has finished chunks, and the parts of some ranks are on no machine that takes part.
+Result<void> check_present(const std::map<uint64_t, Build>& builds) {
+    for (const auto& [count, build] : builds)
+        if (const auto missing = build.missing(); !missing.empty() && build.unsound().size() < count)
+            return failed("--resume",
+                          fmt::format("of the interrupted conversion by {}, the work folder of rank {} is on "
+                                      "no machine that takes part",
+                                      ranks_text(count), fmt::join(missing, ", ")),
+                          "bring its machine back, or leave --resume out to begin anew");
+    return {};
 }
 
 /// What a rank without a part must know of the build.
@@ -180,21 +211,31 @@ Result<void> take_over(Workspace& work, std::vector<Workspace>& left, Ranks& ran
                        const BuildOptions& options, const MemoryPlan& memory) {
     std::array<uint64_t, 3> seen{left.size(), work.finished("chunk") ? 1u : 0u, work.resumable() ? 1u : 0u};
     LUCARNE_TRY(ranks.sum(seen));
-    if (seen[0] == 0) return {};
     const bool further = seen[1] == ranks.count();  // these ranks have chunks of their own
-    if (!further && seen[2] == ranks.count()) {
+    if (!further && seen[0] + seen[1] > 0 && seen[2] == ranks.count()) {
+        left.reserve(left.size() + 1);  // parts point into it
         std::vector<Part> parts;
         for (Workspace& other : left)
             if (auto part = restore(other, inputs, options)) parts.push_back(std::move(*part));
-        LUCARNE_ASSIGN(const auto builds, compare(ranks, parts));
+        auto own = restore(work, inputs, options);
+        const bool has_own = own.has_value();
+        if (has_own) parts.push_back(std::move(*own));
+        LUCARNE_ASSIGN(const auto builds, compare(ranks, work, left, parts));
         if (const Build* build = best(builds)) {
             if (ranks.rank() == 0)
                 log::info("going on after '{}' of the interrupted conversion by {}",
                           build->normals ? "normals" : "chunk", ranks_text(build->holders.size()));
+            if (has_own) {
+                LUCARNE_ASSIGN(Workspace before, work.set_aside());
+                left.push_back(std::move(before));
+                parts.back().work = &left.back();
+            }
             LUCARNE_TRY(move(work, ranks, *build, parts, inputs, options, memory));
-        } else if (ranks.rank() == 0) {
-            log::warn("the interrupted conversion cannot go on, starting from the beginning: {}",
-                      why_not(builds));
+        } else {
+            LUCARNE_TRY(check_present(builds));
+            if (ranks.rank() == 0 && seen[0] > 0)
+                log::warn("the interrupted conversion cannot go on, starting from the beginning: {}",
+                          why_not(builds));
         }
     }
     LUCARNE_TRY(meet(ranks));

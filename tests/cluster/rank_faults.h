@@ -28,7 +28,11 @@ class RankFaults : public testing::Test {
     std::string inputs() const { return folder_ / "cornell.las" + " " + folder_ / "house.las"; }
     std::string output() const { return folder_ / "out/a.luc"; }
     std::string convert() const {
-        return "convert " + inputs() + " --temp " + folder_ / "temp" + kSmall + output();
+        return "convert " + inputs() + " --temp " + folder_ / "temp" + temp_of_rank_ + kSmall + output();
+    }
+    /// Runs the conversion without a fault, each rank with the --temp that its number gives.
+    Outcome without_fault(const std::string& options, int count) const {
+        return with_fault(count, "none", options, count);
     }
     /// Runs a conversion on some ranks, one of them with a fault.
     Outcome with_fault(int rank, const std::string& fault, const std::string& options = {},
@@ -48,6 +52,8 @@ class RankFaults : public testing::Test {
                     ADD_FAILURE() << entry.path() << " was left";
     }
     TemporaryFolder folder_;
+    /// What follows --temp; the shell of each rank expands it.
+    std::string temp_of_rank_;
 };
 
 /// Returns how often a text occurs.

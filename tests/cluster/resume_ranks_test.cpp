@@ -1,4 +1,5 @@
 // A conversion by several ranks goes on after it was killed, to the same bytes.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -54,13 +55,16 @@ class ResumedRanks : public test::RankFaults {
         const std::string what = convert() + " --resume";
         return count > 0 ? on_ranks(count, what) : lucarne(what);
     }
-    /// `kept`: what an earlier conversion finished, empty if this one begins anew. `clean`: nothing is left
-    /// of the interrupted ones.
-    void expect_resumed(const Outcome& resumed, const std::string& kept, bool clean = true) {
+    /// `kept`: what an earlier conversion finished, empty if this one begins anew. Expects that nothing is
+    /// left of the interrupted ones.
+    void expect_resumed(const Outcome& resumed, const std::string& kept) {
         ASSERT_EQ(resumed.code, 0) << resumed.output;
         EXPECT_NE(resumed.output.find(kept), std::string::npos) << resumed.output;
         EXPECT_TRUE(test::bytes_of(output()) == expected_) << resumed.output;
-        EXPECT_TRUE(!clean || fs::is_empty(folder_ / "temp")) << resumed.output;
+        for (const auto& entry : fs::recursive_directory_iterator(folder_ / "temp"))
+            EXPECT_TRUE(entry.path().parent_path() == folder_ / "temp" && !temp_of_rank_.empty())
+                << entry.path() << " was left\n"
+                << resumed.output;
         fs::remove(output());
     }
     /// The work folders that a conversion has left, each with its points.
@@ -101,22 +105,61 @@ TEST_F(ResumedRanks, GoOnAgainWhenTheyAreKilledWhileTheyTakeOver) {
     for (const int at : {calls / 4, calls / 2}) {
         interrupt();
         EXPECT_NE(with_fault(1, "kill:" + std::to_string(at), "--resume", 2).code, 0);
-        // A rank that is killed while it removes a work folder, or before its journal has a record, leaves
-        // one that nobody can tell to be of this conversion.
-        expect_resumed(resume(at == calls / 4 ? 2 : 4), "going on after", false);
-        fs::remove_all(folder_ / "temp");
-        fs::create_directory(folder_ / "temp");
+        expect_resumed(resume(at == calls / 4 ? 2 : 4), "going on after");
     }
 }
 
-TEST_F(ResumedRanks, BeginAnewWhereOneHasLostItsScratch) {
-    for (const int count : {3, 2}) {
-        interrupt();
-        ASSERT_EQ(left().size(), 3u);
-        fs::remove_all(left()[1]);
-        expect_resumed(resume(count),
-                       count == 3 ? "1 of 3 ranks have lost what stage 'scan' made" : "are lost or damaged");
+TEST_F(ResumedRanks, RefuseToGoOnWithoutThePartOfOne) {
+    interrupt();
+    std::vector<fs::path> folders = left();
+    ASSERT_EQ(folders.size(), 3u);
+    const auto of_rank_1 = std::ranges::find_if(
+        folders, [](const fs::path& folder) { return folder.string().find(".1-of-3") != std::string::npos; });
+    ASSERT_NE(of_rank_1, folders.end());
+    const fs::path away = folder_ / "away";
+    fs::rename(*of_rank_1, away);
+    for (const int count : {3, 2, 0}) {
+        const Outcome refused = resume(count);
+        EXPECT_EQ(refused.code, 1) << refused.output;
+        EXPECT_NE(refused.output.find("by 3 ranks, the work folder of rank 1 is on no machine"),
+                  std::string::npos)
+            << refused.output;
+        EXPECT_EQ(left().size(), 2u) << refused.output;
     }
+    fs::rename(away, *of_rank_1);
+    expect_resumed(resume(3), "going on after 'normals'");
+    interrupt();
+    fs::remove_all(left()[1]);
+    expect_resumed(on_ranks(3, convert()), "removed ");  // without --resume
+}
+
+TEST_F(ResumedRanks, GoOnOnOtherMachines) {
+    temp_of_rank_ = "/$OMPI_COMM_WORLD_RANK";
+    const auto temp = [&](int rank) { return folder_ / "temp" + "/" + std::to_string(rank); };
+    for (int rank = 0; rank < 3; ++rank) fs::create_directory(temp(rank));
+    // All run elsewhere, or two have changed places.
+    for (const bool all : {true, false}) {
+        interrupt();
+        fs::rename(temp(0), temp(9));
+        fs::rename(temp(1), temp(0));
+        if (all) fs::rename(temp(2), temp(1));
+        fs::rename(temp(9), temp(all ? 2 : 1));
+        expect_resumed(without_fault("--resume", 3), "going on after 'normals'");
+    }
+}
+
+TEST_F(ResumedRanks, RemoveWorkFoldersThatWereBeingMadeOrRemoved) {
+    interrupt();
+    const std::vector<fs::path> folders = left();
+    ASSERT_EQ(folders.size(), 3u);
+    fs::remove(folders[0] / "points");
+    fs::remove(folders[0] / "normals");
+    fs::resize_file(folders[0] / "journal", 0);
+    for (size_t i = 1; i < 3; ++i) {
+        fs::remove_all(folders[i]);
+        fs::create_directory(folders[i]);
+    }
+    expect_resumed(resume(2), "");
 }
 
 TEST_F(ResumedRanks, BeginAnewWhereAFileIsDamaged) {
@@ -129,11 +172,19 @@ TEST_F(ResumedRanks, BeginAnewWhereAFileIsDamaged) {
     }
 }
 
-TEST_F(ResumedRanks, BeginAnewWhenAnInputHasChanged) {
+TEST_F(ResumedRanks, RefuseToGoOnWhenAnInputHasChanged) {
     interrupt();
     fs::last_write_time(folder_ / "house.las", fs::file_time_type::clock::now() + std::chrono::hours(1));
+    for (const int count : {3, 2, 0}) {
+        const Outcome refused = resume(count);
+        EXPECT_EQ(refused.code, 1) << refused.output;
+        EXPECT_NE(refused.output.find("has stages of another conversion: '" + folder_ / "house.las"),
+                  std::string::npos)
+            << refused.output;
+        EXPECT_EQ(left().size(), 3u) << refused.output;
+    }
     convert_alone();
-    expect_resumed(resume(2), "removed ");
+    expect_resumed(on_ranks(2, convert()), "removed ");  // without --resume
 }
 
 TEST_F(ResumedRanks, RemoveWhatOthersLeftIfTheyAreNotToGoOn) {

@@ -24,8 +24,10 @@ namespace fs = std::filesystem;
 constexpr const char* kJournal = "journal";
 constexpr const char* kSuffix = ".lucarne-work";
 constexpr const char* kIdentity = "identity";
-/// All files of a work folder; nothing else in it is touched.
-const std::array<std::string, 3> kFiles = {kJournal, "points", "normals"};
+/// All files of a work folder, in the order in which they are removed; nothing else in it is touched. The
+/// journal is the last one, so that what a kill leaves still says what it is. An empty folder is known by its
+/// name.
+const std::array<std::string, 3> kFiles = {"points", "normals", kJournal};
 constexpr uint64_t kMostRanks = 1 << 20;  ///< more are a damaged journal
 constexpr const char* kBusy = "another conversion to this cache is running";
 /// A record: its stage's name padded with zeros, the number of bytes, the checksum of the whole record, and
@@ -53,6 +55,18 @@ uint64_t folder_bytes(const fs::path& folder) {
 
 std::string as_text(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// What the names of all work folders of an output begin with.
+std::string name_of(const std::string& output) {
+    return fmt::format("{:016x}", format::checksum(std::as_bytes(std::span(output))));
+}
+
+/// The build that is to go on is not the one that was interrupted.
+tl::unexpected<Error> another_build(const fs::path& folder, const std::string& difference) {
+    return failed("--resume",
+                  fmt::format("{} has stages of another conversion: {}", folder.string(), difference),
+                  "give the same command and inputs, or leave --resume out to begin anew");
 }
 
 /// Returns the first line in which two identities differ.
@@ -92,10 +106,9 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     work.output_ = fs::absolute(output, error).lexically_normal().string();
     work.identity_ = identity;
     work.part_ = part;
-    std::string name = work.output_;
-    if (part.count > 1) name += fmt::format("\nrank {} of {}", part.rank, part.count);
-    const auto hash = format::checksum(std::as_bytes(std::span(name)));
-    const fs::path folder = temp_folder / fmt::format("{:016x}{}", hash, kSuffix);
+    std::string name = name_of(work.output_);
+    if (part.count > 1) name += fmt::format(".{}-of-{}", part.rank, part.count);
+    const fs::path folder = temp_folder / (name + kSuffix);
     LUCARNE_TRY(ScratchFile::create(temp_folder));  // reports errors of the parent folder
     if (const auto own = make_private_folder(folder); !own) {
         log::warn("{}; this conversion cannot be resumed", own.error().line());
@@ -112,7 +125,7 @@ std::string Workspace::text_of(const std::string& output, Part part, const std::
     return fmt::format("{}\nrank {} of {}\n{}", output, part.rank, part.count, identity);
 }
 
-std::vector<Workspace> Workspace::left_by_others() const {
+Result<std::vector<Workspace>> Workspace::left_by_others() const {
     std::vector<Workspace> left;
     if (folder_.empty()) return left;
     std::vector<fs::path> folders;
@@ -122,34 +135,64 @@ std::vector<Workspace> Workspace::left_by_others() const {
             folders.push_back(entry.path());
     std::ranges::sort(folders);
     for (const fs::path& folder : folders) {
-        auto journal = UpdateFile::open_private(folder / kJournal, false, kBusy);
-        if (!journal) continue;  // just made, in use, or another user's
+        const bool named = folder.filename().string().starts_with(name_of(output_));
+        // A folder that has lost its journal gets an empty one, which is its lock.
+        auto journal = UpdateFile::open_private(folder / kJournal, named, kBusy);
+        if (!journal) continue;  // just removed, in use, or another user's
         Workspace other;
         other.journal_ = std::move(*journal);
         auto records = other.read_journal();
         const std::string text = records && !records->empty() ? as_text((*records)[0].bytes) : "";
         const auto owner = owner_of(text);
-        if (!owner || owner->output != output_) {
+        if (owner ? owner->output != output_ : !named) {
             if (part_.rank == 0)
                 log::warn(
                     "{} holds {} of an interrupted conversion; resume that one with --resume, or remove it",
                     folder.string(), bytes_text(folder_bytes(folder)));
             continue;
         }
-        if (owner->part.count == part_.count) continue;  // another rank is about to open it
         other.temp_folder_ = temp_folder_;
         other.folder_ = folder;
+        if (!owner || records->size() < 2) continue;  // its destructor removes it
         other.part_ = owner->part;
         other.records_ = std::move(*records);
         other.resume_ = resume_;
-        other.keep_ = resume_ == Resume::go_on && text == text_of(output_, owner->part, identity_);
-        if (other.keep_)
-            left.push_back(std::move(other));
-        else
+        other.keep_ = resume_ == Resume::go_on;
+        if (!other.keep_) {
             log::warn("removed {} that an interrupted conversion by {} process(es) left",
                       bytes_text(folder_bytes(folder)), owner->part.count);
+            continue;
+        }
+        const std::string now = text_of(output_, owner->part, identity_);
+        if (text != now) return another_build(folder, difference(text, now));
+        left.push_back(std::move(other));
     }
     return left;
+}
+
+Result<Workspace> Workspace::set_aside() {
+    assert(resumable());
+    const std::string name = folder_.filename().string();
+    std::error_code error;
+    fs::path aside;
+    for (int number = 1; aside.empty() || fs::exists(aside, error); ++number)
+        aside =
+            temp_folder_ / fmt::format("{}.before-{}{}", name.substr(0, name.size() - std::strlen(kSuffix)),
+                                       number, kSuffix);
+    fs::rename(folder_, aside, error);
+    if (error) return failed(folder_.string(), fmt::format("cannot be renamed ({})", error.message()));
+    Workspace before;
+    before.temp_folder_ = temp_folder_;
+    before.folder_ = aside;
+    before.part_ = part_;
+    before.journal_.swap(journal_);
+    before.records_.swap(records_);
+    before.resume_ = resume_;
+    before.keep_ = keep_;
+    LUCARNE_TRY(make_private_folder(folder_));
+    LUCARNE_ASSIGN(journal_, UpdateFile::open_private(folder_ / kJournal, true, kBusy));
+    LUCARNE_TRY(begin(text_of(output_, part_, identity_)));
+    return before;
 }
 
 Workspace& Workspace::operator=(Workspace&& other) noexcept {
@@ -205,6 +248,8 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
             tell_at_interrupt();
             return {};
         }
+        if (keep_ && !same && part_.count > 1 && records_.size() > 1)
+            return another_build(folder_, difference(before, identity));
         if (keep_ && !same)
             log::warn("the interrupted conversion was another one, starting from the beginning: {}",
                       difference(before, identity));
@@ -213,9 +258,15 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
                       bytes_text(folder_bytes(folder_)));
     }
     // Files that cannot be removed are emptied when they are opened.
-    remove_private_files(folder_, std::span(kFiles).subspan(1));
-    records_.clear();
+    remove_private_files(folder_, std::span(kFiles).first(kFiles.size() - 1));
     LUCARNE_TRY(journal_->truncate(0));
+    return begin(identity);
+}
+
+/// Begins an empty journal.
+Result<void> Workspace::begin(const std::string& identity) {
+    records_.clear();
+    end_ = 0;
     tell_at_interrupt();
     const auto bytes = std::as_bytes(std::span(identity));
     return append({kIdentity, {bytes.begin(), bytes.end()}});

@@ -31,14 +31,18 @@ class Workspace {
         uint64_t rank = 0, count = 1;
     };
     /// `identity` says what is built from which inputs with which options; leftovers of another build are not
-    /// used. Errors: another process is building `output`; no folder can be made.
+    /// used. Errors: another process is building `output`; no folder can be made; the build of several
+    /// processes is to go on, and the folder has stages of another one.
     static Result<Workspace> open(const std::filesystem::path& temp_folder,
                                   const std::filesystem::path& output, const std::string& identity,
                                   Resume resume, Part part);
-    /// Opens the folders that other numbers of processes left of the same output, as far as no other process
-    /// has them open. Those of another build, and all if the build is not to go on, are removed instead. Call
-    /// it when all processes have opened their own folders.
-    std::vector<Workspace> left_by_others() const;
+    /// Opens the other folders that are left of the same output, as far as no other process has them open: of
+    /// other numbers of processes, or of a process that runs on another machine now. If the build is not to
+    /// go on, they are removed instead, and so are those without a finished stage. Call it when all processes
+    /// have opened their own folders. Errors: the build is to go on, and a folder has stages of another one.
+    Result<std::vector<Workspace>> left_by_others() const;
+    /// Gives the folder another name and returns it. This workspace begins anew in an empty folder.
+    Result<Workspace> set_aside();
     Workspace(Workspace&& other) noexcept { *this = std::move(other); }
     Workspace& operator=(Workspace&& other) noexcept;
     /// Removes the folder, unless `go_on` was given, a stage was finished, and the output was not.
@@ -66,6 +70,7 @@ class Workspace {
     static std::string text_of(const std::string& output, Part part, const std::string& identity);
     Result<std::vector<Record>> read_journal() const;
     Result<void> start(const std::string& identity, Resume resume);
+    Result<void> begin(const std::string& identity);
     Result<void> append(Record record);
     void tell_at_interrupt() const;
 
