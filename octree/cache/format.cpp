@@ -21,7 +21,7 @@ uint64_t checksum(std::span<const std::byte> data) {
 SuperblockBytes encode(const Superblock& block) {
     SuperblockBytes bytes{};
     std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
-    store<uint32_t>(&bytes[8], kVersion);
+    store<uint32_t>(&bytes[8], block.version);
     store<uint32_t>(&bytes[12], kEntryBytes);
     const uint64_t fields[8] = {block.generation,         block.directory_offset, block.directory_bytes,
                                 block.directory_checksum, block.metadata_offset,  block.metadata_bytes,
@@ -33,11 +33,13 @@ SuperblockBytes encode(const Superblock& block) {
 
 std::optional<Superblock> decode(std::span<const std::byte, kSuperblockBytes> bytes) {
     if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) return std::nullopt;
-    if (load<uint32_t>(&bytes[8]) != kVersion || load<uint32_t>(&bytes[12]) != kEntryBytes)
+    const auto version = load<uint32_t>(&bytes[8]);
+    if ((version != kVersion && version != kWideVersion) || load<uint32_t>(&bytes[12]) != kEntryBytes)
         return std::nullopt;
     if (load<uint64_t>(&bytes[kChecked]) != checksum(bytes.first(kChecked))) return std::nullopt;
     const auto field = [&](size_t i) { return load<uint64_t>(&bytes[16 + 8 * i]); };
-    return Superblock{field(0), field(1), field(2), field(3), field(4), field(5), field(6), field(7)};
+    return Superblock{field(0), field(1), field(2), field(3), field(4),
+                      field(5), field(6), field(7), version};
 }
 
 void store_entry(const Entry& entry, std::byte* at) {

@@ -17,6 +17,8 @@ static_assert(std::endian::native == std::endian::little,
 
 inline constexpr std::array<uint8_t, 8> kMagic = {'L', 'U', 'C', 'A', 'R', 'N', 'E', 0x1a};
 inline constexpr uint32_t kVersion = 2;
+/// The version of caches whose scan numbers have 32 bits. Readers of version 2 would mix up the scans.
+inline constexpr uint32_t kWideVersion = 3;
 inline constexpr size_t kSuperblockBytes = 4096;
 inline constexpr uint64_t kFirstPayload = 2 * kSuperblockBytes;
 inline constexpr size_t kEntryBytes = 64;
@@ -33,11 +35,12 @@ struct Superblock {
     uint64_t directory_offset = 0, directory_bytes = 0, directory_checksum = 0;
     uint64_t metadata_offset = 0, metadata_bytes = 0, metadata_checksum = 0;
     uint64_t file_bytes = 0;  ///< everything that this state needs lies before this offset
+    uint32_t version = kVersion;
     bool operator==(const Superblock&) const = default;
 };
 using SuperblockBytes = std::array<std::byte, kSuperblockBytes>;
 SuperblockBytes encode(const Superblock& block);
-/// Empty unless magic, version, entry size and checksum are right.
+/// Empty unless magic, version (one of the two), entry size and checksum are right.
 std::optional<Superblock> decode(std::span<const std::byte, kSuperblockBytes> bytes);
 
 /// One node's entry in the directory.

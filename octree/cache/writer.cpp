@@ -7,6 +7,7 @@
 #include <xxhash.h>
 
 #include "octree/cache/metadata.h"
+#include "octree/tree/scan_number.h"
 
 namespace lucarne::octree {
 namespace {
@@ -59,6 +60,7 @@ Result<CacheWriter> CacheWriter::update(UpdateFile file, const format::Superbloc
     LUCARNE_TRY(file.truncate(before.file_bytes));
     writer.update_ = std::move(file);
     writer.next_block_ = 1 - newest;
+    writer.before_ = before;
     writer.generation_ = before.generation + 1;
     writer.begin_ = writer.end_ = before.file_bytes;
     return writer;
@@ -143,6 +145,7 @@ Result<uint64_t> CacheWriter::write_directory() {
 Result<void> CacheWriter::finish(const SourceHeader& header) {
     format::Superblock block;
     block.generation = generation_;
+    if (ScanNumber(header.schema).most() > kMostShortScans) block.version = format::kWideVersion;
     const std::string metadata = metadata_text(header);
     if (metadata.size() > format::kMaxMetadata)
         return failed("metadata", fmt::format("{} bytes are more than a cache can hold", metadata.size()));
@@ -163,7 +166,8 @@ void CacheWriter::abandon() {
 }
 
 /// A new cache gets both superblocks and its name. An update overwrites the older superblock once all data
-/// that the new one refers to is on the disk.
+/// that the new one refers to is on the disk. If it is the first of its version, the state before gets that
+/// version as well, or programs that do not know it would show that state, and write after it.
 Result<void> CacheWriter::commit(format::Superblock block) {
     const auto bytes = format::encode(block);
     if (!update_) {
@@ -174,6 +178,10 @@ Result<void> CacheWriter::commit(format::Superblock block) {
     LUCARNE_TRY(update_->sync());
     switching_ = true;
     LUCARNE_TRY(update_->write_at(next_block_ * format::kSuperblockBytes, bytes));
+    LUCARNE_TRY(update_->sync());
+    if (before_.version == block.version) return {};
+    before_.version = block.version;
+    LUCARNE_TRY(update_->write_at((1 - next_block_) * format::kSuperblockBytes, format::encode(before_)));
     return update_->sync();
 }
 

@@ -89,6 +89,7 @@ class CacheWriter {
     std::optional<UpdateFile> update_;    ///< ...or of one that is updated
     std::optional<SharedOutput> shared_;  ///< ...or of a new one that others write as well
     std::optional<ScratchFile> stage_;    ///< ...or of what is only kept for another
+    format::Superblock before_;           ///< the state that an update changes
     size_t next_block_ = 0;               ///< index of the superblock that an update writes
     uint64_t generation_ = 1, begin_ = 0;
     bool switching_ = false;

@@ -111,6 +111,19 @@ class Cache : public testing::Test {
     format::Superblock block_;
 };
 
+TEST_F(Cache, OpensTheVersionsThatItKnows) {
+    EXPECT_EQ(block_.version, format::kVersion) << "few scans keep the version that all readers know";
+    for (uint32_t version = 0; version < 6; ++version) {
+        format::Superblock block = block_;
+        block.version = version;
+        const std::string bytes = with_superblock(bytes_, block);
+        if (version == format::kVersion || version == format::kWideVersion)
+            EXPECT_TRUE(open_cache(write(bytes))) << version;
+        else
+            expect_rejected(bytes, "is not a cache of this version");
+    }
+}
+
 TEST_F(Cache, OpensFromEitherSuperblockAndVerifyMissesTheOther) {
     for (const size_t broken : {size_t{0}, kSuperblockBytes}) {
         std::string bytes = bytes_;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "octree/cache/cache.h"
+#include "octree/cache/file.h"
 #include "octree/convert/build.h"
 #include "octree/edit/edit.h"
 #include "octree/tree/scan_number.h"
@@ -34,11 +35,14 @@ std::vector<std::unique_ptr<ComputedSource>> scans_of_one_point(uint32_t count) 
     return scans;
 }
 
-/// Expects that every point of a cache has the number of its scan.
+/// Expects that every point of a cache has the number of its scan, and that the versions in both superblocks
+/// tell readers how wide it is.
 void expect_numbered(const std::filesystem::path& path, uint64_t points, io::ScalarType type) {
     const auto cache = open_cache(path).value();
     const io::Schema& schema = cache->header().schema;
     EXPECT_EQ(schema.find(io::names::scan)->type, type);
+    const auto blocks = read_superblocks(*InputFile::open(path)).value();
+    for (const auto& block : blocks) EXPECT_EQ(block.value().version, type == io::ScalarType::u32 ? 3u : 2u);
     const ScanNumber scan(schema);
     uint64_t seen = 0;
     for (uint32_t node = 0; node < cache->nodes().size(); ++node) {
