@@ -57,11 +57,15 @@ Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const Mem
     return facts;
 }
 
-Result<void> check_ranks(Ranks& ranks, const BuildOptions& options) {
+Result<void> check_program(Ranks& ranks) {
     const BuildInfo built = build_info();
-    LUCARNE_TRY(
-        check_same(ranks, "lucarne-mpi",
-                   fmt::format("version {} {} format {}", built.version, built.revision, format::kVersion)));
+    return check_same(
+        ranks, "lucarne-mpi",
+        fmt::format("version {} {} format {}", built.version, built.revision, format::kVersion));
+}
+
+Result<void> check_ranks(Ranks& ranks, const BuildOptions& options) {
+    LUCARNE_TRY(check_program(ranks));
     LUCARNE_TRY(check_same(ranks, "--memory or another option",
                            fmt::format("{} {} {} {} {} {}", options.memory, static_cast<int>(options.normals),
                                        options.neighbours, static_cast<int>(options.neighbour_search),

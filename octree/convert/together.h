@@ -18,6 +18,8 @@ InputRange inputs_of_rank(const Unifier& inputs, const Ranks& ranks);
 Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const MemoryPlan& memory, Ranks& ranks,
                                 const Visit& seen, std::optional<CountGrid>& counted);
 
+/// Errors: the ranks run different programs. A meeting.
+Result<void> check_program(Ranks& ranks);
 /// Errors: the ranks run different programs, or see different inputs or options. A meeting.
 Result<void> check_ranks(Ranks& ranks, const BuildOptions& options);
 

@@ -1,4 +1,5 @@
 // Several ranks write the same bytes as one process.
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -93,6 +94,42 @@ TEST_F(SameBytes, WithNormalsHolesAndColours) {
 
 TEST_F(SameBytes, WithNormalsOfOneTileWithStations) {
     expect_same({"nave.laz"}, "--no-fill");
+}
+
+TEST_F(SameBytes, WhereEachRankSeesOnlyItsShareOfTheFiles) {
+    const test::TemporaryFolder views;  // a folder with one file for each rank, and one with both
+    const std::vector<std::string> names = {"survey.las", "nave.laz"};
+    for (const char* view : {"0", "1", "both"}) std::filesystem::create_directory(views / view);
+    for (size_t i = 0; i < 2; ++i)
+        for (const std::string& view : {std::to_string(i), std::string("both")})
+            std::filesystem::create_hard_link(*folder_ / names[i], views / view + "/" + names[i]);
+    const std::string what = std::string("exec ") + LUCARNE_BINARY +
+                             " convert survey.las nave.laz --normals none --memory 48M --overwrite -o ";
+    const Outcome one = test::shell("cd " + views / "both" + " && " + what + *folder_ / "alone.luc");
+    ASSERT_EQ(one.code, 0) << one.output;
+    const std::string script = views / "rank.sh";
+    std::ofstream(script) << "cd " << views / "$OMPI_COMM_WORLD_RANK"
+                          << " && " << what << *folder_ / "together.luc"
+                          << "\n";
+    const Outcome two = test::shell(test::mpirun(2) + "sh " + script);
+    ASSERT_EQ(two.code, 0) << two.output;
+    EXPECT_TRUE(test::bytes_of(*folder_ / "alone.luc") == test::bytes_of(*folder_ / "together.luc"));
+}
+
+TEST_F(SameBytes, OfACacheThatIsAppendedTo) {
+    const std::string alone = *folder_ / "alone.luc", together = *folder_ / "together.luc";
+    const auto what = [](const std::vector<std::string>& names, const std::string& cache) {
+        return "convert " + inputs(names) + "--memory 48M -o " + cache;
+    };
+    std::filesystem::remove(alone);
+    std::filesystem::remove(together);
+    ASSERT_EQ(lucarne(what({"nave.laz"}, alone)).code, 0);
+    std::filesystem::copy_file(alone, together);
+    ASSERT_EQ(lucarne(what({"rooms.las", "cornell.las"}, alone) + " --append").code, 0);
+    const Outcome several = on_ranks(3, what({"rooms.las", "cornell.las"}, together) + " --append");
+    ASSERT_EQ(several.code, 0) << several.output;
+    EXPECT_TRUE(test::bytes_of(alone) == test::bytes_of(together));
+    ASSERT_EQ(lucarne("verify " + together).code, 0);
 }
 
 TEST_F(SameBytes, WithKeptNormals) {

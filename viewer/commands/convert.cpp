@@ -27,6 +27,7 @@
 #include "viewer/inputs/describe.h"
 #include "viewer/inputs/input.h"
 #include "viewer/inputs/scan_list.h"
+#include "viewer/inputs/shared_headers.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -43,10 +44,12 @@ struct ConvertOptions {
 /// handles.
 class ClosedScan final : public io::PointSource {
  public:
-    static Result<std::unique_ptr<io::PointSource>> create(const std::string& path,
-                                                           const io::ReadOptions& options) {
-        LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options));
-        return std::unique_ptr<io::PointSource>(new ClosedScan(path, options, scan->schema(), scan->info()));
+    ClosedScan(std::string path, io::ReadOptions options, ScanHeader header)
+        : path_(std::move(path)),
+          options_(std::move(options)),
+          schema_(std::move(header.schema)),
+          info_(std::move(header.info)) {
+        options_.quiet = true;
     }
     const io::Schema& schema() const override { return schema_; }
     const io::ScanInfo& info() const override { return info_; }
@@ -72,14 +75,6 @@ class ClosedScan final : public io::PointSource {
         std::unique_ptr<io::PointSource> scan_;
         std::unique_ptr<io::PointReader> reader_;
     };
-    ClosedScan(std::string path, io::ReadOptions options, io::Schema schema, io::ScanInfo info)
-        : path_(std::move(path)),
-          options_(std::move(options)),
-          schema_(std::move(schema)),
-          info_(std::move(info)) {
-        options_.quiet = true;
-    }
-
     std::string path_;
     io::ReadOptions options_;
     io::Schema schema_;
@@ -132,15 +127,19 @@ using Scans = std::vector<std::unique_ptr<io::PointSource>>;
 
 /// Opens the inputs. Removes inputs that cannot be opened from the list and notes them in `aside`.
 Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
+    const std::vector<std::string> paths = options.inputs;
+    std::vector<Result<ScanHeader>> headers;
+    if (options.build.ranks && !options.append) {
+        LUCARNE_ASSIGN(headers, read_headers_together(paths, options.read, *options.build.ranks));
+    } else {
+        headers = read_headers(paths, options.read);
+    }
     Scans scans;
-    for (size_t i = 0; i < options.inputs.size();) {
-        auto scan = ClosedScan::create(options.inputs[i], options.read);
-        if (scan) {
-            scans.push_back(std::move(*scan));
-            ++i;
-        } else {
-            LUCARNE_TRY(aside.take(std::move(scan).error(), options.inputs));
-        }
+    for (size_t i = 0; i < paths.size(); ++i) {
+        if (headers[i])
+            scans.push_back(std::make_unique<ClosedScan>(paths[i], options.read, *std::move(headers[i])));
+        else
+            LUCARNE_TRY(aside.take(std::move(headers[i]).error(), options.inputs));
     }
     if (scans.empty()) return rejected("convert", "none of the inputs can be read");
     return scans;
@@ -177,20 +176,11 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
     return aside.result(build.output.string());
 }
 
-/// Errors: what several ranks cannot do together.
-Result<void> check_for_ranks(ConvertOptions& options) {
-    auto& build = options.build;
-    if (!build.ranks) return {};
-    if (options.append)
-        return bad_arguments("--append", "is not possible on several ranks",
-                             "start one lucarne without mpirun or srun");
-    if (build.ranks->count() == 1) build.ranks = nullptr;
-    return {};
-}
-
 Result<void> convert(ConvertOptions options) {
     auto& build = options.build;
-    LUCARNE_TRY(check_for_ranks(options));
+    if (build.ranks && build.ranks->count() == 1) build.ranks = nullptr;
+    // One rank changes the cache in place. The others wait for its outcome (main_mpi.cpp).
+    if (options.append && build.ranks && build.ranks->rank() > 0) return {};
     LUCARNE_ASSIGN(build.memory, build_memory(options.memory));
     const std::string output = build.output.string();
     if (names_scan(output))
