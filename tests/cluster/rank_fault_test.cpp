@@ -1,4 +1,5 @@
 // What goes wrong on one rank ends all of them with a clear error, and nothing half-written stays.
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -60,6 +61,22 @@ TEST_F(RankFaults, ABrokenInputIsSkippedAsByOneProcess) {
     EXPECT_TRUE(test::bytes_of(folder_ / "one.luc") == test::bytes_of(output()));
 }
 
+TEST_F(RankFaults, AnInputThatChangesWhileItIsReadIsTheErrorOfAll) {
+    // The first two writes of a rank are records of its journal: the identity, and that of the scan stage.
+    // No rank reads its inputs again before all have written the second one.
+    const std::string house = folder_ / "house.las";
+    // Nearly all its points move to one place, in a file of the same size.
+    ASSERT_GT(std::filesystem::file_size(house), 1501000u);
+    ::setenv("LUCARNE_FAULT_COMMAND",
+             ("dd if=/dev/zero of=" + house + " bs=1000 seek=1 count=1500 conv=notrunc status=none").c_str(),
+             1);
+    const Outcome changed = with_fault(2, "run-write:2");
+    ::unsetenv("LUCARNE_FAULT_COMMAND");
+    EXPECT_EQ(changed.code, 3) << changed.output;
+    EXPECT_EQ(times(changed.output, "changed while they were read"), 3u) << changed.output;
+    expect_nothing_left();
+}
+
 TEST_F(RankFaults, ASecondConversionToTheSameCacheIsRefused) {
     // The first one is any process that holds the lock of the unfinished file: this one.
     const std::string part = folder_ / "out/.a.luc.lucarne-part";
@@ -101,10 +118,10 @@ TEST_F(RankFaults, RanksThatSeeOtherInputsOrOptionsAreRefused) {
     expect_nothing_left();
 }
 
-TEST_F(RankFaults, WhatSeveralRanksCannotDoIsOneClearError) {
-    const Outcome refused = on_ranks(2, convert() + " --append");
-    EXPECT_EQ(refused.code, 2) << refused.output;
-    EXPECT_EQ(times(refused.output, "--append: is not possible on several ranks"), 2u) << refused.output;
+TEST_F(RankFaults, AnErrorOfAppendingIsTheErrorOfAll) {
+    const Outcome missing = on_ranks(3, convert() + " --append");
+    EXPECT_EQ(missing.code, 3) << missing.output;
+    EXPECT_EQ(times(missing.output, "lucarne: " + output()), 3u) << missing.output;
     expect_nothing_left();
 }
 

@@ -11,6 +11,8 @@
 //   N-th call fails, with ERRNO (default: 5, EIO), unless it frees space power:N:SEED     cuts the power
 //   before the N-th call, see below
 //
+//   run-write:N      runs the shell command $LUCARNE_FAULT_COMMAND before the N-th pwrite, which then goes on
+//
 // A power cut loses or keeps by chance every sector of 512 bytes that was written since its file's last sync,
 // and so a file's growth. Of the names given since their folder's last sync, it loses the newest ones. Then
 // it sends SIGKILL.
@@ -71,6 +73,7 @@ class Faults {
         if (kind_ == "trace") trace_ += std::string(name) + '\n';
         if (kind_ == "kill-sync" && std::string(name) == "fsync" && ++syncs_ == at_)
             ::kill(::getpid(), SIGKILL);
+        if (kind_ == "run-write" && std::string(name) == "pwrite" && ++writes_ == at_) run();
         if (kind_ == "full" && calls_ >= at_ && call == Call::write) return ENOSPC;
         if (calls_ != at_) return 0;
         if (kind_ == "error" && call != Call::cleanup) return seed_ ? static_cast<int>(seed_) : EIO;
@@ -144,6 +147,13 @@ class Faults {
         if (kind_ != "count" && kind_ != "trace") std::sscanf(argument_.c_str(), "%llu:%llu", &at_, &seed_);
     }
 
+    /// Ends the program if the command fails.
+    static void run() {
+        const char* command = std::getenv("LUCARNE_FAULT_COMMAND");
+        ::unsetenv("LD_PRELOAD");  // the command is to have no faults
+        if (!command || std::system(command) != 0) ::kill(::getpid(), SIGKILL);
+    }
+
     void lose() {
         const auto write_back = next<ssize_t(int, const void*, size_t, off_t)>("pwrite");
         const auto cut = next<int(int, off_t)>("ftruncate");
@@ -189,8 +199,8 @@ class Faults {
 
     std::recursive_mutex mutex_;
     std::string kind_, argument_, trace_;
-    unsigned long long at_ = 0, seed_ = 0, calls_ = 0,
-                       syncs_ = 0;  ///< `seed_`: the second number, whatever it means
+    unsigned long long at_ = 0, seed_ = 0, calls_ = 0, syncs_ = 0,
+                       writes_ = 0;  ///< `seed_`: the second number, whatever it means
     std::vector<Undo> undos_;
     std::vector<UndoName> undo_names_;
 };
