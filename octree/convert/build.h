@@ -35,8 +35,8 @@ struct BuildOptions {
     uint32_t neighbours = 16;  ///< number of neighbours for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
     bool fill = true;  ///< look for holes, and store surfels that fill them (octree/holes)
-    /// The processes that build the cache together; null: this one alone. All have the same options. What
-    /// they resume must have been built by as many.
+    /// The processes that build the cache together; null: this one alone. All have the same options. They go
+    /// on with what any number of processes left, if all its parts are on machines that take part.
     Ranks* ranks = nullptr;
     BuildListener* listener = nullptr;  ///< told about the progress (build_listener.h); outlives the build
 };
