@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include <glm/common.hpp>
@@ -36,12 +37,19 @@ class Coverage {
     /// has its own `normal`.
     void add(const glm::vec3& middle, float radius, const glm::vec3& normal) {
         const Range columns = range(u_, middle, radius), rows = range(v_, middle, radius);
-        for (int j = rows.first; j < rows.last; ++j)
+        // Numbers of their own instead of vectors that are indexed: those would be in memory, not in
+        // registers.
+        const float normal_u = normal[u_], normal_v = normal[v_], normal_w = normal[w_];
+        const float low_u = low_[u_], low_v = low_[v_], cell_u = cell_[u_], cell_v = cell_[v_];
+        const float middle_u = middle[u_], middle_v = middle[v_];
+        for (int j = rows.first; j < rows.last; ++j) {
+            const float v = low_v + cell_v * (static_cast<float>(j) + 0.5f) - middle_v;
             for (int i = columns.first; i < columns.last; ++i) {
-                glm::vec3 away = point(i, j) - middle;
-                away[w_] = -(away[u_] * normal[u_] + away[v_] * normal[v_]) / normal[w_];
-                if (glm::dot(away, away) <= radius * radius) covered_ |= uint64_t{1} << (kSide * j + i);
+                const float u = low_u + cell_u * (static_cast<float>(i) + 0.5f) - middle_u;
+                const float w = -(u * normal_u + v * normal_v) / normal_w;
+                if (u * u + v * v + w * w <= radius * radius) covered_ |= uint64_t{1} << (kSide * j + i);
             }
+        }
     }
     /// The covered points: bit 8 j + i is the point i along the axis after w, and j along the one after that.
     uint64_t covered() const { return covered_; }
@@ -52,6 +60,15 @@ class Coverage {
         const uint64_t a = covered_ << 1 & ~kFirstColumn, b = (covered_ & ~kFirstColumn) >> 1;
         const uint64_t c = covered_ << kSide, d = covered_ >> kSide;
         return covered_ | (a & b & (c | d)) | (c & d & (a | b));
+    }
+    /// Returns whether all points for which inside(point) is true are covered.
+    template <class Inside>
+    bool covers(const Inside& inside) const {
+        for (uint64_t open = ~covered_; open != 0; open &= open - 1) {
+            const int bit = std::countr_zero(open);
+            if (inside(point(bit % kSide, bit / kSide))) return false;
+        }
+        return true;
     }
     /// Returns the share of those points for which inside(point) is true that are covered.
     template <class Inside>

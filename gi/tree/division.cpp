@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 
+#include "gi/shared/brdf.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/tree/coverage.h"
@@ -77,9 +78,11 @@ std::vector<PlacedSurfel> place_surfels(std::span<const FlatSurfel> surfels) {
     std::vector<PlacedSurfel> placed;
     for (size_t i = 0; i < surfels.size(); ++i) {
         const FlatSurfel& s = surfels[i];
-        if (has_disc(s))
-            placed.push_back(
-                {{s.x, s.y, s.z}, static_cast<uint32_t>(i), side_of(decode_octahedral(s.normal))});
+        if (!has_disc(s)) continue;
+        const glm::vec3 normal = decode_octahedral(s.normal);
+        const float area = s.area > 0 && std::isfinite(s.area) ? s.area : kPi * s.radius * s.radius;
+        placed.push_back(
+            {{s.x, s.y, s.z}, normal, s.radius, area, static_cast<uint32_t>(i), side_of(normal)});
     }
     std::stable_sort(placed.begin(), placed.end(),
                      [](const PlacedSurfel& a, const PlacedSurfel& b) { return a.side < b.side; });

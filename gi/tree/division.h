@@ -12,11 +12,13 @@
 
 namespace lucarne::gi {
 
-/// A surfel that the tree holds, as far as its place in the tree depends on it.
+/// A surfel that the tree holds, decoded once for all levels: they stand in the order of the tree, where
+/// those of a node are read one after the other.
 struct PlacedSurfel {
-    glm::vec3 position;
-    uint32_t index;  ///< its number
-    uint32_t side;   ///< of a cube: the one to which its normal is nearest, 0 to 5
+    glm::vec3 position, normal;
+    float radius, area;  ///< m, m^2; the area of its disc if the surfel has none
+    uint32_t index;      ///< its number
+    uint32_t side;       ///< of a cube: the one to which its normal is nearest, 0 to 5
 };
 
 struct Range {

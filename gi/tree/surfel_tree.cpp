@@ -74,17 +74,6 @@ struct Moments {
     }
 };
 
-/// A decoded surfel.
-struct Disc {
-    glm::vec3 middle, normal;
-    float radius, area;
-};
-
-Disc disc_of(const FlatSurfel& s) {
-    const float area = s.area > 0 && std::isfinite(s.area) ? s.area : kPi * s.radius * s.radius;
-    return {{s.x, s.y, s.z}, decode_octahedral(s.normal), s.radius, area};
-}
-
 /// What a child is to its parent.
 struct Summary {
     glm::vec3 middle{0.0f}, axis{0.0f, 0.0f, 1.0f};
@@ -96,59 +85,59 @@ struct Summary {
 };
 
 /// Sets what a surface's discs hide of its box; all of it if there are no holes and no end within `squares`.
-void cover_surface(std::span<const Disc> discs, const Box& squares, Summary& node) {
+void cover_surface(std::span<const PlacedSurfel> discs, const Box& squares, Summary& node) {
     // All discs shall be within the box if they are moved into the plane.
     const glm::vec3 margin = (node.thickness + kThinnest * node.bound) * glm::abs(node.axis);
     node.box = {node.box.low - margin, node.box.high + margin};
     Coverage coverage(largest_axis(node.axis), node.box.low, node.box.high, node.middle, node.axis);
-    for (const Disc& disc : discs) {
-        const glm::vec3 offset = disc.middle - node.middle;
-        coverage.add(disc.middle - node.axis * glm::dot(offset, node.axis), disc.radius, node.axis);
+    for (const PlacedSurfel& disc : discs) {
+        const glm::vec3 offset = disc.position - node.middle;
+        coverage.add(disc.position - node.axis * glm::dot(offset, node.axis), disc.radius, node.axis);
     }
-    const float filled = coverage.share([&](const glm::vec3& p) {
+    const bool whole = coverage.covers([&](const glm::vec3& p) {
         return glm::all(glm::greaterThanEqual(p, squares.low - margin)) &&
                glm::all(glm::lessThanEqual(p, squares.high + margin));
     });
-    if (filled < 1) node.mask = coverage.closed();
+    if (!whole) node.mask = coverage.closed();
 }
 
 /// Returns the share of its sphere that a cloud hides, the mean of three directions.
-float cloud_fill(std::span<const Disc> discs, const Summary& node) {
+float cloud_fill(std::span<const PlacedSurfel> discs, const Summary& node) {
     constexpr float kEdgeOn = 1e-3f;
     float sum = 0;
     for (int w = 0; w < 3; ++w) {
         glm::vec3 normal(0.0f);
         normal[w] = 1;
         Coverage coverage(w, node.middle - node.bound, node.middle + node.bound, node.middle, normal);
-        for (const Disc& disc : discs)
-            if (std::abs(disc.normal[w]) > kEdgeOn) coverage.add(disc.middle, disc.radius, disc.normal);
+        for (const PlacedSurfel& disc : discs)
+            if (std::abs(disc.normal[w]) > kEdgeOn) coverage.add(disc.position, disc.radius, disc.normal);
         sum +=
             coverage.share([&](const glm::vec3& p) { return glm::distance(p, node.middle) <= node.bound; });
     }
     return sum / 3;
 }
 
-Summary summary_of(std::span<const Disc> discs) {
+Summary summary_of(std::span<const PlacedSurfel> discs) {
     Summary sum;
     Moments moments;
     glm::dvec3 middle(0.0);
     double area = 0;
     Box squares;  // bounds of the areas, without the rims of the discs
-    for (const Disc& disc : discs) {
-        middle += glm::dvec3(disc.area * disc.middle);
+    for (const PlacedSurfel& disc : discs) {
+        middle += glm::dvec3(disc.area * disc.position);
         area += disc.area;
         moments.add(disc.normal, disc.area);
         const glm::vec3 reach =
             disc.radius * glm::sqrt(glm::max(glm::vec3(0.0f), 1.0f - disc.normal * disc.normal));
-        sum.box.add({disc.middle - reach, disc.middle + reach});
+        sum.box.add({disc.position - reach, disc.position + reach});
         const glm::vec3 half = reach * std::min(1.0f, 0.5f * std::sqrt(disc.area) / disc.radius);
-        squares.add({disc.middle - half, disc.middle + half});
+        squares.add({disc.position - half, disc.position + half});
     }
     sum.area = static_cast<float>(area);
     sum.middle = glm::vec3(middle / area);
     sum.axis = moments.axis();
-    for (const Disc& disc : discs) {
-        const glm::vec3 offset = disc.middle - sum.middle;
+    for (const PlacedSurfel& disc : discs) {
+        const glm::vec3 offset = disc.position - sum.middle;
         sum.bound = std::max(sum.bound, glm::length(offset) + disc.radius);
         sum.thickness = std::max(sum.thickness, std::abs(glm::dot(offset, sum.axis)) +
                                                     disc_reach(disc.radius, glm::dot(disc.normal, sum.axis)));
@@ -181,7 +170,7 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
 }
 
 /// Sets the nodes, level by level.
-void divide_all(SurfelTree& tree, std::span<const FlatSurfel> surfels, std::span<PlacedSurfel> order) {
+void divide_all(SurfelTree& tree, std::span<PlacedSurfel> order) {
     std::vector<Range> level{{0, order.size()}};
     while (!level.empty()) {
         const size_t begin = tree.nodes.size();
@@ -190,26 +179,22 @@ void divide_all(SurfelTree& tree, std::span<const FlatSurfel> surfels, std::span
         tree.surfels.resize(8 * tree.nodes.size(), kNoSurfel);
         tree.areas.resize(8 * tree.nodes.size());
         std::vector<Parts> children(level.size());
-        parallel_ranges(level.size(), std::max<size_t>(1, level.size() / kTasks),
-                        [&](size_t first, size_t last) {
-                            std::vector<Disc> discs;
-                            for (size_t i = first; i < last; ++i) {
-                                children[i] = divide(order, level[i], tree.levels.size() - 1);
-                                for (size_t k = 0; k < children[i].count; ++k) {
-                                    const Range& range = children[i].ranges[k];
-                                    const bool leaf = range.count() == 1;
-                                    discs.clear();
-                                    for (const PlacedSurfel& s : order.subspan(range.first, range.count()))
-                                        discs.push_back(disc_of(surfels[s.index]));
-                                    const Summary child = summary_of(discs);
-                                    WideNode& node = tree.nodes[begin + i];
-                                    set_child(node, k, child, leaf);
-                                    node.child[k] = kLeafChild;  // nodes get their numbers below
-                                    tree.areas[8 * (begin + i) + k] = child.area;
-                                    if (leaf) tree.surfels[8 * (begin + i) + k] = order[range.first].index;
-                                }
-                            }
-                        });
+        parallel_ranges(
+            level.size(), std::max<size_t>(1, level.size() / kTasks), [&](size_t first, size_t last) {
+                for (size_t i = first; i < last; ++i) {
+                    children[i] = divide(order, level[i], tree.levels.size() - 1);
+                    for (size_t k = 0; k < children[i].count; ++k) {
+                        const Range& range = children[i].ranges[k];
+                        const bool leaf = range.count() == 1;
+                        const Summary child = summary_of(order.subspan(range.first, range.count()));
+                        WideNode& node = tree.nodes[begin + i];
+                        set_child(node, k, child, leaf);
+                        node.child[k] = kLeafChild;  // nodes get their numbers below
+                        tree.areas[8 * (begin + i) + k] = child.area;
+                        if (leaf) tree.surfels[8 * (begin + i) + k] = order[range.first].index;
+                    }
+                }
+            });
         std::vector<Range> next;
         for (size_t i = 0; i < level.size(); ++i)
             for (size_t k = 0; k < children[i].count; ++k) {
@@ -237,7 +222,7 @@ SurfelTree build_tree(std::span<const FlatSurfel> surfels) {
     SurfelTree tree;
     std::vector<PlacedSurfel> order = place_surfels(surfels);
     tree.leaves = order.size();
-    if (!order.empty()) divide_all(tree, surfels, order);
+    if (!order.empty()) divide_all(tree, order);
     return tree;
 }
 

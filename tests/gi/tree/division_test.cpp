@@ -78,5 +78,41 @@ TEST(Coverage, GapsOfOnePointCloseAndHolesStay) {
         EXPECT_EQ(open.closed(), open.covered());
 }
 
+// The masks of nodes follow from it.
+TEST(Coverage, CoversWhatIsAskedForOnlyIfNoPointOfItIsOpen) {
+    Coverage coverage(1, glm::vec3(0.0f), glm::vec3(8, 0, 8), glm::vec3(0.0f), glm::vec3(0, 1, 0));
+    for (int z = 0; z < 8; ++z)
+        for (int x = 0; x < 8; ++x)
+            if (x != 6 || z != 2)
+                coverage.add(glm::vec3(static_cast<float>(x) + 0.5f, 0, static_cast<float>(z) + 0.5f), 0.3f,
+                             glm::vec3(0, 1, 0));
+    EXPECT_FALSE(coverage.covers([](const glm::vec3&) { return true; }));
+    EXPECT_FALSE(coverage.covers([](const glm::vec3& p) { return p.x > 6 && p.z < 3; }));
+    EXPECT_TRUE(coverage.covers([](const glm::vec3& p) { return p.x < 6; }));
+    EXPECT_TRUE(coverage.covers([](const glm::vec3& p) { return p.z > 3; }));
+}
+
+// Discs turned out of the plane cover less of it along one axis alone, whichever axis the grid lies across.
+TEST(Coverage, DiscsSeenAtAnAngleAreNarrowAlongTheirTilt) {
+    for (int w = 0; w < 3; ++w) {
+        const int u = (w + 1) % 3, v = (w + 2) % 3;
+        glm::vec3 high(0.0f), middle(0.0f), normal(0.0f);
+        high[u] = high[v] = 8;
+        middle[u] = middle[v] = 4;
+        normal[u] = 0.8f;
+        normal[w] = 0.6f;
+        glm::vec3 axis(0.0f);
+        axis[w] = 1;
+        Coverage coverage(w, glm::vec3(0.0f), high, glm::vec3(0.0f), axis);
+        coverage.add(middle, 3, normal);
+        for (int j = 0; j < 8; ++j)
+            for (int i = 0; i < 8; ++i) {
+                const float x = static_cast<float>(i) - 3.5f, y = static_cast<float>(j) - 3.5f;
+                const bool inside = x * x / 0.36f + y * y <= 9;
+                EXPECT_EQ((coverage.covered() >> (8 * j + i) & 1) != 0, inside) << w << ' ' << i << ' ' << j;
+            }
+    }
+}
+
 }  // namespace
 }  // namespace lucarne::gi
