@@ -15,6 +15,8 @@ namespace lucarne::gi {
 namespace {
 
 constexpr size_t kSurfelsATask = 16384;
+/// Micro-buffers of up to so many rays are kept: about 85 MB. More are drawn again for each reflection.
+constexpr size_t kMostRaysHeld = size_t{1} << 24;
 /// A node is thick over this share of its bound. Its surfels see different things, so it is divided until it
 /// is this much smaller than flat ones.
 constexpr float kThickPlace = 0.25f, kThickShare = 0.25f;
@@ -115,31 +117,44 @@ void Radiosity::choose_places(const LitTree& scene, uint32_t level) {
     }
 }
 
+Result<void> Radiosity::gather(ClDevice& device, Gatherer& gatherer, Gathered what, const Settings& settings,
+                               std::span<const GatherPoint> points, std::span<glm::vec3> gathered,
+                               const std::atomic<bool>* stop) {
+    if (points.size() * settings.side * settings.side > kMostRaysHeld) {
+        std::vector<glm::vec4> light(points.size());
+        LUCARNE_TRY(gatherer.gather(device, what, points, settings.side, settings.seed, light, stop));
+        for (size_t i = 0; i < light.size(); ++i) gathered[i] = glm::vec3(light[i]);
+        return {};
+    }
+    LUCARNE_TRY(gatherer.see(device, points, settings.side, settings.seed, buffers_, stop));
+    if (stop && *stop) return {};
+    LUCARNE_ASSIGN(const auto light, gatherer.shade(device, what, buffers_));
+    for (size_t i = 0; i < light.size(); ++i) gathered[i] = light[i].on(points[i].normal);
+    return {};
+}
+
 Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer& gatherer,
                                 const Settings& settings, std::vector<SideLight>& light,
-                                const std::atomic<bool>* stop) const {
+                                const std::atomic<bool>* stop) {
     const auto own = scene.own_light();
     const auto reflectances = scene.reflectances();
     light.assign(own.begin(), own.end());
     std::vector<SideLight> last = light, slots;
     std::vector<GatherPoint> points = points_;
-    std::vector<glm::vec4> gathered(points.size());
-    const auto gather = [&](Gathered what, uint64_t number) {
-        for (size_t i = 0; i < points.size(); ++i)
-            points[i].seed = static_cast<uint32_t>(mix64(settings.seed + number, i));
-        return gatherer.gather(device, what, points, settings.side, settings.seed, gathered, stop);
-    };
+    for (size_t i = 0; i < points.size(); ++i)
+        points[i].seed = static_cast<uint32_t>(mix64(settings.seed, i));
+    std::vector<glm::vec3> gathered(points.size(), glm::vec3(0.0f));
     // Returns what a surfel reflects of the light that its place gathered.
     const auto reflected = [&](size_t i) -> SideLight {
         const uint32_t place = place_of_[i];
         if (place == kNoSurfel) return {};
         const bool same = glm::dot(normal_of(scene.surfels()[i]), points[2 * place].normal) >= 0;
-        const glm::vec3 front = kPi * glm::vec3(gathered[2 * place + (same ? 0 : 1)]);
-        const glm::vec3 back = kPi * glm::vec3(gathered[2 * place + (same ? 1 : 0)]);
+        const glm::vec3 front = kPi * gathered[2 * place + (same ? 0 : 1)];
+        const glm::vec3 back = kPi * gathered[2 * place + (same ? 1 : 0)];
         return {reflectances[i] * front, reflectances[i] * back};
     };
     if (settings.sky) {
-        LUCARNE_TRY(gather(Gathered::sky, settings.bounces));
+        LUCARNE_TRY(gather(device, gatherer, Gathered::sky, settings, points, gathered, stop));
         if (stop && *stop) return {};
         parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {
             for (size_t i = first; i < end; ++i) {
@@ -155,7 +170,7 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
         LUCARNE_TRY(gatherer.set_light(device, slots));
         const SideLobes none;
         LUCARNE_TRY(gatherer.set_lobes(device, bounce == 0 ? scene.lobes() : none));
-        LUCARNE_TRY(gather(Gathered::light_of_surfels, bounce));
+        LUCARNE_TRY(gather(device, gatherer, Gathered::light_of_surfels, settings, points, gathered, stop));
         if (stop && *stop) return {};
         parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {
             for (size_t i = first; i < end; ++i) {

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "gi/gather/gatherer.h"
 #include "gi/gather/lit_tree.h"
@@ -10,7 +14,8 @@ namespace lucarne::gi {
 
 /// Exchanges light between surfels (Ritschel et al. 2009, section 4; Jacobi iteration with push and pull,
 /// Cohen & Wallace 1993). A number of surfels that stand for the nodes of a level of the tree gather; the
-/// surfels of their nodes get the same irradiance, and reflect it each with its own albedo.
+/// surfels of their nodes get the same irradiance, and reflect it each with its own albedo. All reflections
+/// use the same micro-buffers, which are kept: drawing them takes longer than lighting them.
 class Radiosity {
  public:
     /// Chooses at most 2^level places, each for a node whose surfels are close together and nearly coplanar.
@@ -26,11 +31,17 @@ class Radiosity {
     /// Sets the light that each surfel sends out after all these reflections. Leaves out the rest if `stop`
     /// becomes true. Errors: the device failed.
     Result<void> compute(ClDevice& device, const LitTree& scene, Gatherer& gatherer, const Settings& settings,
-                         std::vector<SideLight>& light, const std::atomic<bool>* stop = nullptr) const;
+                         std::vector<SideLight>& light, const std::atomic<bool>* stop = nullptr);
 
     size_t places() const { return points_.size() / 2; }
 
  private:
+    /// Sets the mean radiance that each of `points` receives, W/(sr m^2).
+    Result<void> gather(ClDevice& device, Gatherer& gatherer, Gathered what, const Settings& settings,
+                        std::span<const GatherPoint> points, std::span<glm::vec3> gathered,
+                        const std::atomic<bool>* stop);
+
+    MicroBuffers buffers_;
     std::vector<GatherPoint> points_;  ///< two a place: its surfel's front and back
     std::vector<uint32_t> place_of_;   ///< by surfel; kNoSurfel: it has no disc
 };
