@@ -7,10 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "gi/shared/brdf.h"
 #include "gi/shared/disc.h"
 #include "gi/shared/surfel.h"
-#include "gi/shared/surfel_code.h"
 #include "gi/tree/coverage.h"
 #include "gi/tree/division.h"
 #include "io/core/parallel.h"
