@@ -124,22 +124,25 @@ void add_area(const Light& area, const Strata& strata, const DeviceCut* cut,
     }
 }
 
-void add_sky(const SkyDirections& sky, const Strata& strata, const DeviceCut* cut,
-             std::vector<SharpLight>& target) {
-    for (uint32_t i = 0; i < strata.count(); ++i) {
-        const auto [direction, flux] = sky.draw(strata.lattice(i));
-        Light light{};
-        light.kind = kDirectionalLight;
-        light.direction = glm::vec4(-direction, 0);
-        light.strength = glm::vec4(flux / static_cast<float>(strata.count()), 0);
-        target.push_back({light, cut, true});
-    }
-}
-
 }  // namespace
 
 uint32_t light_faces(const Light& light) {
     return light.kind == kPointLight ? 6 : light.kind == kCosineLight ? 4 : 1;
+}
+
+std::vector<Light> sky_lights(const SkyDirections& sky, uint32_t count, uint64_t index, uint64_t seed,
+                              uint64_t light) {
+    const Strata strata(count, index, seed, light);
+    std::vector<Light> lights;
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto [direction, flux] = sky.draw(strata.lattice(i));
+        Light drawn{};
+        drawn.kind = kDirectionalLight;
+        drawn.direction = glm::vec4(-direction, 0);
+        drawn.strength = glm::vec4(flux / static_cast<float>(count), 0);
+        lights.push_back(drawn);
+    }
+    return lights;
 }
 
 std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky, uint64_t index) {
@@ -172,7 +175,8 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
         add_area(frame.lights[i], strata(i, share(UINT32_MAX, 4)), frame.gl.cuts.light_views[i], result);
     if (!sky.dark()) {
         const size_t beyond = frame.lights.size();
-        add_sky(sky, strata(beyond, share(UINT32_MAX, 1)), frame.gl.cuts.light, result);
+        for (const Light& light : sky_lights(sky, share(UINT32_MAX, 1), index, frame.settings[kSeed], beyond))
+            result.push_back({light, frame.gl.cuts.light, true});
     }
     return result;
 }

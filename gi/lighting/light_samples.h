@@ -24,6 +24,11 @@ struct SharpLight {
 /// sample each; black lights get none.
 std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky, uint64_t index);
 
+/// Returns `count` directional lights that stand in for a sky, which must not be dark: directions in
+/// proportion to its luminance, stratified, and others for each `index`, `seed` and number `light`.
+std::vector<Light> sky_lights(const SkyDirections& sky, uint32_t count, uint64_t index, uint64_t seed,
+                              uint64_t light);
+
 /// Returns the number of faces of a light, and so of its views (light_face() in gi/shared/light.h).
 uint32_t light_faces(const Light& light);
 

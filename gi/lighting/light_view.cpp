@@ -31,41 +31,13 @@ CameraView square_view(const glm::vec3& origin, const glm::vec3& forward, float 
             0};
 }
 
-/// A rectangle perpendicular to a direction that covers a box as seen along it, about the middle of the box,
-/// m.
-struct Outline {
-    glm::vec3 right, up;  // unit
-    glm::vec2 half;
-};
-
-/// Returns the smallest of some rectangles turned about the direction, so that few texels miss the scene.
-Outline outline(const Bounds& bounds, const glm::vec3& direction) {
-    constexpr int kTurns = 16;  // of a right angle
-    const glm::vec3 helper = std::abs(direction.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
-    const glm::vec3 level = glm::normalize(glm::cross(direction, helper));
-    const glm::vec3 upright = glm::cross(level, direction), half = (bounds.max - bounds.min) / 2.0f;
-    Outline best;
-    for (int turn = 0; turn < kTurns; ++turn) {
-        const float angle = 1.57079633f * static_cast<float>(turn) / kTurns;
-        Outline tried{level * std::cos(angle) + upright * std::sin(angle),
-                      upright * std::cos(angle) - level * std::sin(angle),
-                      {}};
-        const auto reach = [&](const glm::vec3& axis) {
-            return std::max(glm::dot(glm::abs(axis), half), 1e-3f);
-        };
-        tried.half = {reach(tried.right), reach(tried.up)};
-        if (turn == 0 || tried.half.x * tried.half.y < best.half.x * best.half.y) best = tried;
-    }
-    return best;
-}
-
 /// Makes the view of a directional light: as many texels as a square of `resolution` has, nearly square ones
 /// unless the scene is very elongated.
 CameraView directional_view(const Light& light, const Bounds& bounds, uint32_t resolution) {
     const glm::vec3 direction(light.direction.x, light.direction.y, light.direction.z);
     const float radius = std::max(glm::length(bounds.max - bounds.min) / 2, 1e-3f);
     const float distance = 2 * kFarAway * radius;
-    const Outline seen = outline(bounds, direction);
+    const Outline seen = outline_along(bounds, direction);
     const float stretch = std::clamp(std::sqrt(seen.half.x / seen.half.y), .5f, 2.0f);
     const auto texels = [&](float share) {
         return std::max(static_cast<uint32_t>(static_cast<float>(resolution) * share), 1u);
@@ -125,6 +97,26 @@ CameraView view_of(const Light& light, uint32_t face, const Frame& frame, uint32
 }
 
 }  // namespace
+
+Outline outline_along(const Bounds& bounds, const glm::vec3& direction) {
+    constexpr int kTurns = 16;  // of a right angle
+    const glm::vec3 helper = std::abs(direction.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+    const glm::vec3 level = glm::normalize(glm::cross(direction, helper));
+    const glm::vec3 upright = glm::cross(level, direction), half = (bounds.max - bounds.min) / 2.0f;
+    Outline best;
+    for (int turn = 0; turn < kTurns; ++turn) {
+        const float angle = 1.57079633f * static_cast<float>(turn) / kTurns;
+        Outline tried{level * std::cos(angle) + upright * std::sin(angle),
+                      upright * std::cos(angle) - level * std::sin(angle),
+                      {}};
+        const auto reach = [&](const glm::vec3& axis) {
+            return std::max(glm::dot(glm::abs(axis), half), 1e-3f);
+        };
+        tried.half = {reach(tried.right), reach(tried.up)};
+        if (turn == 0 || tried.half.x * tried.half.y < best.half.x * best.half.y) best = tried;
+    }
+    return best;
+}
 
 std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky, uint64_t index) {
     std::vector<LightView> views;

@@ -3,6 +3,9 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include "gi/lighting/light_samples.h"
 
 namespace lucarne::gi {
@@ -17,6 +20,16 @@ struct LightView {
     CameraView view;
     bool of_sky = false;  ///< of a light that stands in for the sky
 };
+
+/// A rectangle perpendicular to a direction that covers a box as seen along it, about the middle of the box,
+/// m.
+struct Outline {
+    glm::vec3 right, up;  // unit
+    glm::vec2 half;
+};
+
+/// Returns the smallest of some rectangles turned about the direction, so that few texels miss the scene.
+Outline outline_along(const Bounds& bounds, const glm::vec3& direction);
 
 /// Returns the views of all lights of the frame (`sky` is that of its environment; `index` in place of
 /// Frame::index chooses the samples of lights with a size), with kLightResolution

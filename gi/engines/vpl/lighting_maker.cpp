@@ -159,12 +159,13 @@ Result<void> LightingMaker::place_importons(Frame& frame, const Inputs& inputs) 
 
 Result<void> LightingMaker::place_further_importons(Frame& frame, const Inputs& inputs) {
     sky_ = inputs.sky;
+    openings_.clear();
     if (!frame.settings[kViewVpls]) return {};
     const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
     LUCARNE_TRY(view_importance_.look_further(frame, inputs.materials, seed, maps_));
     if (sky_.dark()) return {};
-    LUCARNE_ASSIGN(const auto openings, view_importance_.openings(frame.gl.device));
-    sky_.favour(openings);
+    LUCARNE_ASSIGN(openings_, view_importance_.openings(frame.gl.device));
+    sky_.favour(openings_);
     return {};
 }
 

@@ -54,6 +54,10 @@ class LightingMaker {
     bool serves(const CameraView& camera) const { return view_importance_.serves(camera); }
     /// The directions of the sky, those favoured that reach what the camera saw then.
     const SkyDirections& sky() const { return sky_; }
+    /// How much light from each cell of the sky's grid reaches what the camera saw then; empty: unknown.
+    const std::vector<float>& openings() const { return openings_; }
+    /// The casters that look() decoded.
+    const ShadowMaps& casters() const { return maps_; }
 
  private:
     struct Work {
@@ -89,6 +93,7 @@ class LightingMaker {
 
     Basis looked_;
     SkyDirections sky_;
+    std::vector<float> openings_;
     LightSeeding light_seeding_;
     Seeds candidates_;
     ViewImportance view_importance_;

@@ -9,6 +9,8 @@ namespace lucarne::gi::vpl {
 inline constexpr std::array<int64_t, 3> kInterleaves = {1, 2, 4};
 inline constexpr std::array<int64_t, 6> kAtlases = {256, 512, 1024, 2048, 4096, 8192};
 
+inline constexpr std::array<int64_t, 5> kSkyCounts = {64, 128, 256, 512, 1024};  // of 4 x 4 tiles
+
 inline constexpr Option<uint32_t> kVpls{{
     .kind = OptionKind::integer,
     .key = "vpls",
@@ -48,6 +50,22 @@ inline constexpr Option<uint32_t> kAtlas{{
     .values = kAtlases,
     .slider = {256, 8192, true},
     .defaults = {int64_t{1024}, int64_t{1024}, int64_t{4096}},
+    .cheaper = -1,
+}};
+
+inline constexpr Option<uint32_t> kSkyDirections{{
+    .kind = OptionKind::integer,
+    .key = "sky_directions",
+    .label = "sky directions",
+    .help = "Directions from which the sky lights a frame",
+    .cost =
+        "directions from which the sky lights a frame, each with a coarse shadow map: more of them smooth\n"
+        "the light of windows, and time grows with them",
+    .least = 64,
+    .most = 1024,
+    .values = kSkyCounts,
+    .slider = {64, 1024, true},
+    .defaults = {int64_t{128}, int64_t{256}, int64_t{512}},
     .cheaper = -1,
 }};
 

@@ -9,6 +9,7 @@
 #include "gi/engines/vpl/lighting_maker.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/engines/vpl/shading/shading.h"
+#include "gi/engines/vpl/sky/sky_light.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
@@ -20,8 +21,8 @@ namespace {
 
 constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info,    &kVpls.info,
                                           &kInterleave.info,   &kAtlas.info,         &kLightResolution.info,
-                                          &kLightSamples.info, &kBestCandidate.info, &kViewVpls.info,
-                                          &kReuse.info,        &kSeed.info};
+                                          &kLightSamples.info, &kSkyDirections.info, &kBestCandidate.info,
+                                          &kViewVpls.info,     &kReuse.info,         &kSeed.info};
 constexpr EngineInfo kInfo{.name = "vpl",
                            .label = "Global illumination",
                            .description = "virtual point lights with imperfect shadow maps",
@@ -48,14 +49,17 @@ class VplEngine : public Engine {
     Result<void> shade_ambient(Frame& frame);
     Result<void> shade(Frame& frame, const Bounce& bounce, const AtlasLayout& layout, const Buffer& atlas);
     Result<void> merge(Frame& frame);
+    Result<void> add_views(Frame& frame, const std::vector<LightView>& views, bool of_sky, bool any_state);
     Result<void> add_direct(Frame& frame, bool any_state);
     LightingMaker::Inputs inputs(const Basis& now);
     Basis basis_of(const Frame& frame) const;
 
     Buffer materials_;
     Sky sky_;
-    SkyDirections light_sky_;   ///< the directions of the sky from which light is sampled
-    uint64_t light_index_ = 0;  ///< Frame::index by which lights with a size are sampled
+    SkyLight sky_light_;
+    bool tiles_have_sky_ = false;  ///< the direct light of the sky is in the tiles of the frame
+    SkyDirections light_sky_;      ///< the directions of the sky from which light is sampled
+    uint64_t light_index_ = 0;     ///< Frame::index by which lights with a size are sampled
     std::vector<LightView> views_;
     LightGBuffers light_gbuffers_;
     LightingMaker making_;
@@ -80,6 +84,7 @@ Result<void> VplEngine::prepare(Frame& frame) {
     if (frame.gl.cuts.light_views.size() < frame.lights.size())
         return failed("vpl", "there are fewer light views than lights");
     LUCARNE_TRY(upload_sky(frame, sky_));
+    sky_light_.set_environment(frame.environment);
     if (light_sky_.environment() != sky_.directions.environment()) light_sky_ = sky_.directions;
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }
@@ -96,6 +101,7 @@ Basis VplEngine::basis_of(const Frame& frame) const {
     basis.scene.settings = 0;
     basis.settings.set(kInterleave, 1);
     basis.settings.set(kReuse, true);
+    basis.settings.set(kSkyDirections, kSkyCounts.front());
     if (!frame.settings[kViewVpls]) return basis;
     const bool serves = frame.moving && making_.serves(frame.camera);
     basis.camera = serves ? making_.looked_from() : frame.camera;
@@ -124,7 +130,7 @@ Result<void> VplEngine::merge(Frame& frame) {
                  [&] { return merge_tiles(frame, materials_, tiles_, reuse ? &history_ : nullptr); });
 }
 
-/// Sets frame.gl.radiance to the light of the requested bounces. VPLs and maps are kept while nothing but the
+/// Adds the light of the requested bounces to the tiles. VPLs and maps are kept while nothing but the
 /// camera moves.
 Result<void> VplEngine::make_and_shade(Frame& frame, const Basis& basis) {
     const EngineSettings& s = frame.settings;
@@ -135,7 +141,6 @@ Result<void> VplEngine::make_and_shade(Frame& frame, const Basis& basis) {
         return shade(frame, lighting.bounces[bounce - 1], lighting.layout,
                      lighting.bounces[keep ? bounce - 1 : 0].atlas);
     };
-    LUCARNE_TRY(timed(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
     const bool first = keep && frame.index == 0;
     if (!keep || !((first ? lasting_ : other_).basis == basis)) {
         making_.begin(basis);
@@ -150,7 +155,7 @@ Result<void> VplEngine::make_and_shade(Frame& frame, const Basis& basis) {
     }
     for (uint32_t bounce = 1; keep && bounce <= last; ++bounce)
         LUCARNE_TRY(shade_bounce(first ? lasting_ : other_, bounce));
-    return merge(frame);
+    return {};
 }
 
 /// Continues to make light, for the time that the frame allows.
@@ -193,19 +198,28 @@ Result<void> VplEngine::shade_ambient(Frame& frame) {
     return merge(plain);
 }
 
-/// Adds emission, background and the first reflection of the lights. `any_state`: shadows may be those of a
-/// moment ago.
-Result<void> VplEngine::add_direct(Frame& frame, bool any_state) {
+/// Adds the first reflection of the lights of some views, of those of the sky only or of all others.
+Result<void> VplEngine::add_views(Frame& frame, const std::vector<LightView>& views, bool of_sky,
+                                  bool any_state) {
     Device& device = frame.gl.device;
-    frame.times.begin("direct light");
-    LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
-    for (const LightView& view : views_) {
+    for (const LightView& view : views) {
+        if (view.of_sky != of_sky) continue;
         LUCARNE_ASSIGN(const GBuffer* seen, any_state ? light_gbuffers_.look_at_any_state(device, view)
                                                       : light_gbuffers_.look(device, view));
         LUCARNE_TRY(add_light(frame, materials_, view, *seen));
     }
-    frame.times.end();
     return {};
+}
+
+/// Adds emission, background and the first reflection of the lights. `any_state`: shadows may be those of a
+/// moment ago.
+Result<void> VplEngine::add_direct(Frame& frame, bool any_state) {
+    const TimedPass pass(frame, "direct light");
+    LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
+    LUCARNE_TRY(add_views(frame, views_, false, any_state));
+    if (!tiles_have_sky_) return add_views(frame, views_, true, any_state);
+    if (sky_light_.bright().dark()) return {};
+    return add_views(frame, light_views(frame, sky_light_.bright(), light_index_), true, any_state);
 }
 
 /// Makes all light that the frame needs.
@@ -215,8 +229,8 @@ Result<void> VplEngine::render_at_once(Frame& frame) {
     light_index_ = frame.index;
     const Basis basis = basis_of(frame);
     const bool lit = !frame.lights.empty() || !sky_.directions.dark() || emits(frame);
-    const bool favours = s[kViewVpls] && !sky_.directions.dark();
-    if (lit && (wants_indirect(s) || favours)) {
+    // The sky's direct light needs casters, and its directions are favoured if VPLs are.
+    if (lit && (wants_indirect(s) || !sky_.directions.dark())) {
         LUCARNE_TRY(making_.look(frame, inputs(basis), basis));
         light_sky_ = making_.sky();
     }
@@ -226,16 +240,24 @@ Result<void> VplEngine::render_at_once(Frame& frame) {
         LUCARNE_TRY(
             timed(frame, "light G-buffer", [&] { return light_gbuffers_.look(frame.gl.device, views_[0]); }));
     indirect_ = wants_indirect(s) && (!views_.empty() || emits(frame));
-    if (indirect_)
-        LUCARNE_TRY(make_and_shade(frame, basis));
-    else
+    tiles_have_sky_ = wants_direct(s) && !sky_light_.dark();
+    if (indirect_ || tiles_have_sky_) {
+        LUCARNE_TRY(timed(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
+        if (indirect_) LUCARNE_TRY(make_and_shade(frame, basis));
+        if (frame.stopped()) return {};
+        if (tiles_have_sky_)
+            LUCARNE_TRY(sky_light_.add(frame, materials_, making_.openings(), making_.casters(), tiles_));
+        LUCARNE_TRY(merge(frame));
+    } else {
         frame.gl.radiance.clear(0);
+    }
     if (frame.stopped()) return {};
     return wants_direct(s) ? add_direct(frame, false) : Result<void>{};
 }
 
 /// Shows light of earlier frames where that of this one takes long, and makes new light meanwhile.
 Result<void> VplEngine::render_in_motion(Frame& frame) {
+    tiles_have_sky_ = false;
     views_ = light_views(frame, light_sky_, light_index_);
     light_gbuffers_.begin(frame.gl.device, views_, 2 * views_.size());
     indirect_ = wants_indirect(frame.settings) && (!views_.empty() || emits(frame));

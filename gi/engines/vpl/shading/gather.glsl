@@ -2,23 +2,11 @@
 #include "gi/engines/vpl/bindings.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/engines/vpl/lights.glsl"
+#include "gi/engines/vpl/shading/receiver.glsl"
 #include "gi/engines/vpl/shading/separation.h"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 
 layout(binding = kUnitAtlas) uniform usamplerBuffer atlas_texels;
-
-struct Receiver {
-    vec3 position;
-    vec3 normal;
-    float radius;    // of its surfel, m
-    vec3 to_viewer;  // unit
-    Reflectance reflectance;
-};
-
-struct Gathered {
-    vec3 irradiance;  // W/m^2: free of the receiver's albedo
-    vec3 specular;    // W/(sr m^2) toward the viewer by the receiver's lobe
-};
 
 // Returns whether VPL `index` sees the receiver according to its shadow map; `normal` is that of the receiver. The
 // surface that the map holds in the direction of the receiver is a blocker if it lies in front of the plane of the

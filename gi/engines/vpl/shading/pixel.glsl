@@ -1,14 +1,21 @@
 // A pixel of the camera's G-buffer as a receiver, for shading and merging.
 #include "gi/engines/vpl/bindings.h"
 #include "gi/shared/gbuffer.h"
+// A text is inserted where it is first included, so what both branches need comes first.
+#include "gi/engines/vpl/shading/receiver.glsl"
+#include "gi/engines/vpl/sky/sky_map.h"
+#ifdef LUCARNE_SKY
+#include "gi/engines/vpl/sky/gather.glsl"
+#else
 #include "gi/engines/vpl/shading/gather.glsl"
+#endif
 
 layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
 layout(binding = kUnitGBuffer) uniform usamplerBuffer camera_words;  // GBufferTexel[]
 
 uniform CameraView camera;
 uniform uint interleave;   // n
-uniform uint light_count;  // M
+uniform uint light_count;  // M, or the number of directions of the sky
 
 GBufferTexel camera_texel(uint index) {
     uvec4 words = texelFetch(camera_words, int(index));
@@ -25,7 +32,7 @@ Receiver pixel_receiver(uvec2 pixel, GBufferTexel texel) {
     return receiver;
 }
 
-// Returns the estimate of the light of all VPLs by one tile.
+// Returns the estimate of the light of all VPLs, or of the sky, by one tile.
 Gathered gather_tile(Receiver receiver, uint tile) {
     uint tiles = interleave * interleave;
     Gathered gathered = gather(receiver, tile, tiles, light_count);

@@ -59,12 +59,10 @@ Result<void> shade_natively(const Frame& frame, const Seeds& seeds, const AtlasL
                                     .atlas = atlas.as<const uint32_t>().data(),
                                     .side = layout.side,
                                     .splat_angle = layout.splat_angle};
-    const native::GatherOutput output{
-        .irradiance = diffuse.as<glm::vec4>().data(),
-        .own_irradiance = own_diffuse.as<glm::vec4>().data(),
-        .isolated = isolated.as<const uint32_t>().subspan(sizeof(IsolatedHeader) / sizeof(uint32_t),
-                                                          isolated.as<const IsolatedHeader>().front().count),
-        .joints = joints.as<const uint32_t>().data()};
+    const native::GatherOutput output{.irradiance = diffuse.as<glm::vec4>().data(),
+                                      .own_irradiance = own_diffuse.as<glm::vec4>().data(),
+                                      .isolated = isolated_pixels(isolated),
+                                      .joints = joints.as<const uint32_t>().data()};
     native::gather(input, frame.settings[kInterleave], output);
     return {};
 }
@@ -95,6 +93,11 @@ Result<void> merge_natively(const Frame& frame, const Buffer& materials, const T
 
 }  // namespace
 
+std::span<const uint32_t> isolated_pixels(const MappedBuffer& isolated) {
+    return isolated.as<const uint32_t>().subspan(sizeof(IsolatedHeader) / sizeof(uint32_t),
+                                                 isolated.as<const IsolatedHeader>().front().count);
+}
+
 Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
     LUCARNE_ASSIGN(const Program* join, frame.gl.device.program("gi/engines/vpl/shading/join.comp"));
     const size_t pixels = size_t{frame.gl.gbuffer.width} * frame.gl.gbuffer.height;
@@ -123,18 +126,26 @@ Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& see
                          const Buffer& atlas, Tiles& target) {
     if (frame.gl.device.native_passes() && !target.glossy)
         return shade_natively(frame, seeds, layout, atlas, target);
-    LUCARNE_ASSIGN(const Program* shade,
-                   frame.gl.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
-    LUCARNE_ASSIGN(const Program* shade_isolated,
-                   frame.gl.device.program("gi/engines/vpl/shading/shade_isolated.comp", defines(target)));
-    materials.bind(kBindMaterials);
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     atlas.bind_texels(kUnitAtlas, TexelView::one_word);
+    return run_shading(frame, materials, layout.maps, {}, target, [&](const Program& program) {
+        set_layout(program, layout);
+        program.set("footprint_variance", footprint_variance(frame.index));
+    });
+}
+
+Result<void> run_shading(Frame& frame, const Buffer& materials, uint32_t lights, const Defines& more,
+                         const Tiles& target, const std::function<void(const Program&)>& prepare) {
+    Defines how = defines(target);
+    how.insert(how.end(), more.begin(), more.end());
+    LUCARNE_ASSIGN(const Program* shade, frame.gl.device.program("gi/engines/vpl/shading/shade.comp", how));
+    LUCARNE_ASSIGN(const Program* shade_isolated,
+                   frame.gl.device.program("gi/engines/vpl/shading/shade_isolated.comp", how));
+    materials.bind(kBindMaterials);
     for (const Program* program : {shade, shade_isolated}) {
         bind_pixels(frame, *program);
-        set_layout(*program, layout);
-        program->set("light_count", layout.maps);
-        program->set("footprint_variance", footprint_variance(frame.index));
+        program->set("light_count", lights);
+        prepare(*program);
     }
     const uint32_t n = frame.settings[kInterleave];
     target.diffuse.bind(kBindDiffuse);

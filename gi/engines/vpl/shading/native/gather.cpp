@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/engines/vpl/shading/native/window.h"
 #include "gi/engines/vpl/shading/separation.h"
 #include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/engines/vpl/shadow_maps/splats.h"
@@ -298,18 +299,6 @@ void gather_pixels(const GatherJob& job, int first, int end, Batch& batch) {
                 batch.add(hn::Min(column, last), hn::Set(di, y),
                           hn::IfThenElseZero(inside, word(1u << tile)));
             }
-}
-
-/// Returns the tiles of which an isolated pixel finds no light, see missing_tiles() and window_tile() in
-/// join.glsl.
-uint32_t lacking_tiles(const uint32_t* joint, int n, int x, int y) {
-    uint32_t lacking = 0;
-    for (int i = 0; i < n * n; ++i) {
-        if (joint[i >> 3] >> (4 * (i & 7)) & 15) continue;
-        const int column = (x + i % n - (n - 1) / 2 + 2 * n) % n, row = (y + i / n - (n - 1) / 2 + 2 * n) % n;
-        lacking |= 1u << (row * n + column);
-    }
-    return lacking;
 }
 
 /// Shades the isolated pixels of some rows with the VPLs of the tiles that they lack.

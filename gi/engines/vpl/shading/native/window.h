@@ -36,4 +36,16 @@ inline std::vector<Candidate> candidates(int n) {
     return all;
 }
 
+/// Returns the tiles of which an isolated pixel finds no light, see missing_tiles() and window_tile() in
+/// join.glsl.
+inline uint32_t lacking_tiles(const uint32_t* joint, int n, int x, int y) {
+    uint32_t lacking = 0;
+    for (int i = 0; i < n * n; ++i) {
+        if (joint[i >> 3] >> (4 * (i & 7)) & 15) continue;
+        const int column = (x + i % n - (n - 1) / 2 + 2 * n) % n, row = (y + i / n - (n - 1) / 2 + 2 * n) % n;
+        lacking |= 1u << (row * n + column);
+    }
+    return lacking;
+}
+
 }  // namespace lucarne::gi::vpl::native

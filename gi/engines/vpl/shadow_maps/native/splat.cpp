@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "gi/engines/vpl/shadow_maps/native/casters.h"
 #include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/engines/vpl/shadow_maps/queue.h"
 #include "gi/engines/vpl/shadow_maps/splats.h"
@@ -17,6 +18,7 @@
 #define HWY_TARGET_INCLUDE "gi/engines/vpl/shadow_maps/native/splat.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
+#include "gi/engines/vpl/shadow_maps/native/casters-inl.h"
 #include "gi/engines/vpl/shadow_maps/native/texel-inl.h"
 #include "gi/native/vectors-inl.h"
 
@@ -26,19 +28,6 @@ namespace lucarne::gi::vpl::native {
 
 /// Maps that are drawn together: blocks are decoded once for all of them.
 constexpr uint32_t kGroup = 16;
-
-/// Radii and scales of casters by their codes, see casters.glsl and enqueue.comp.
-struct CasterTables {
-    std::array<float, 128> radii, scales;
-    CasterTables(float cut_size, float splat_angle) {
-        const float needed = thinned_area(splat_angle);
-        for (size_t code = 0; code < 128; ++code) {
-            const float steps = static_cast<float>(code) - 127;
-            radii[code] = code ? std::exp2(steps / 6) * cut_size : 0.0f;
-            scales[code] = std::exp2(steps * 0.25f) * cut_size * cut_size / needed;
-        }
-    }
-};
 
 /// Tables of the rays through the middles of a map's columns, u from -1 to 1; rows have the same. They save a
 /// division at each texel.
@@ -68,51 +57,6 @@ HWY_BEFORE_NAMESPACE();
 namespace lucarne::gi::vpl::native::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace gi::native::HWY_NAMESPACE;
-
-constexpr size_t kLanes = HWY_MAX_BYTES / 4;
-
-/// Casters of a block, one after the other.
-struct Casters {
-    static constexpr size_t kRoom = kBlockSurfels + kLanes;
-    alignas(64) float x[kRoom], y[kRoom], z[kRoom], nx[kRoom], ny[kRoom], nz[kRoom];
-    alignas(64) float radius[kRoom], scale[kRoom];
-    alignas(64) uint32_t id[kRoom];
-};
-
-void decode_casters(const SplatJob& job, uint32_t block, Casters& casters) {
-    const Floats df;
-    const Words du;
-    const Ints di;
-    const uint32_t* codes = job.memory.casters + size_t{block} * kBlockSurfels * kCasterWords;
-    for (uint32_t i = 0; i < kBlockSurfels; i += static_cast<uint32_t>(hn::Lanes(df))) {
-        U x, y, z, code;
-        hn::LoadInterleaved4(du, codes + size_t{i} * kCasterWords, x, y, z, code);
-        const auto radius = hn::And(hn::ShiftRight<18>(code), word(127));
-        const F none = hn::Zero(df);
-        const Mask drawn = hn::RebindMask(df, hn::Ne(radius, word(0)));
-        const Mask turned = hn::RebindMask(df, hn::Ne(hn::And(code, word(0x3ffffu)), word(0)));
-        const auto fraction = [&](U bits) {
-            const F p = over(sub(to_float(hn::And(bits, word(511))), set(256.0f)), set(255.0f));
-            const F inside = hn::Max(hn::Min(p, set(1.0f)), set(-1.0f));
-            return hn::BitCast(du, nearest_int(mul(inside, set(32767.0f))));
-        };
-        const U octahedral = hn::Or(hn::And(fraction(code), word(0xffffu)),
-                                    hn::ShiftLeft<16>(fraction(hn::ShiftRight<9>(code))));
-        const V3 normal = choose(turned, decode_octahedral(octahedral), {none, none, none});
-        const F scale =
-            hn::GatherIndex(df, job.tables.scales.data(), hn::BitCast(di, hn::ShiftRight<25>(code)));
-        hn::Store(hn::BitCast(df, x), df, casters.x + i);
-        hn::Store(hn::BitCast(df, y), df, casters.y + i);
-        hn::Store(hn::BitCast(df, z), df, casters.z + i);
-        hn::Store(normal.x, df, casters.nx + i);
-        hn::Store(normal.y, df, casters.ny + i);
-        hn::Store(normal.z, df, casters.nz + i);
-        hn::Store(hn::GatherIndex(df, job.tables.radii.data(), hn::BitCast(di, radius)), df,
-                  casters.radius + i);
-        hn::Store(hn::IfThenElse(drawn, scale, set(-1.0f)), df, casters.scale + i);
-        hn::Store(hn::Iota(du, block * kBlockSurfels + i), du, casters.id + i);
-    }
-}
 
 /// Returns a bit for each map into which a block may have to be drawn, see cull.comp.
 uint32_t cull(const SplatJob& job, const MapFrame* maps, uint32_t block) {
@@ -179,23 +123,6 @@ struct MapDiscs {
     alignas(64) uint32_t surface[kLanes];
     alignas(64) int32_t x0[kLanes], y0[kLanes], x1[kLanes], y1[kLanes];
 };
-
-/// map_surface() of texel.h.
-HWY_INLINE U map_surface(F radius, const V3& normal) {
-    const Ints di;
-    // floor(log2(radius) + 11.5) is the exponent of radius * sqrt(2), plus 11.
-    const auto exponent =
-        hn::Sub(hn::BitCast(di, hn::ShiftRight<23>(hn::BitCast(Words(), mul(radius, set(1.41421356f))))),
-                hn::Set(di, static_cast<int32_t>(kRadiusBias)));
-    const auto code = hn::Min(hn::Max(exponent, hn::Zero(di)), hn::Set(di, 15));
-    const U bits = encode_octahedral(normal);
-    const auto steps = [&](hn::Vec<Ints> fraction) {
-        return hn::BitCast(Words(), to_int(di, add(mul(snorm(fraction), set(31.5f)), set(31.999f))));
-    };
-    const auto both = hn::BitCast(di, bits);
-    const U u = steps(hn::ShiftRight<16>(hn::ShiftLeft<16>(both))), v = steps(hn::ShiftRight<16>(both));
-    return hn::Or(hn::Or(hn::ShiftLeft<12>(hn::BitCast(Words(), code)), hn::ShiftLeft<6>(v)), u);
-}
 
 /// Computes discs and their boxes, disc_over() and map_box() in disc.glsl. Returns those that may be hit.
 HWY_INLINE uint32_t set_up(const SplatJob& job, const MapFrame& map, const Casters& from, size_t at,
@@ -344,7 +271,7 @@ void DrawMaps(const SplatJob& job) {
     for (uint32_t block = 0; block < job.memory.blocks; ++block) {
         uint32_t met = cull(job, maps, block);
         if (met == 0) continue;
-        decode_casters(job, block, casters);
+        decode_casters(job.memory.casters, job.tables, block, casters);
         for (; met; met &= met - 1) {
             const auto i = static_cast<uint32_t>(std::countr_zero(met));
             const size_t count = enqueue(job, maps[i], casters, queued);

@@ -1,0 +1,66 @@
+// Shadow maps of directions of the sky, shared by C++ and GLSL (std430): where they show a point, what their
+// texels hold, and what blocks a point.
+#ifndef LUCARNE_GI_ENGINES_VPL_SKY_SKY_MAP_H
+#define LUCARNE_GI_ENGINES_VPL_SKY_SKY_MAP_H
+
+#include "gi/engines/vpl/shadow_maps/texel.h"
+#include "gi/shared/gbuffer.h"
+#include "gi/shared/language.h"
+
+#ifdef __cplusplus
+namespace lucarne::gi::vpl {
+#endif
+
+// A parallel view along one direction of the sky. The map coordinates of a point p, in texels, are
+// dot(p, across.xyz) + across.w and the same with `down`; its depth, m, is dot(p, away.xyz) + away.w.
+LUCARNE_STRUCT(SkyMap) {
+    vec4 across, down;  // xyz: unit vectors over the texel's size, 1/m
+    vec4 away;          // xyz: unit, the way the light goes
+    vec4 irradiance;    // rgb: of a surface that faces the light, W/m^2
+};
+
+// A texel is empty (kNothing) or depth | radius of the surfel | normal, 16 + 4 + 12 bits: the depth in steps
+// that are the same for all maps, the rest as map_surface() codes it, with a normal in world space that faces
+// the light. The smallest code is the nearest.
+LUCARNE_CONST float kSkyDepthSteps = 65534.0f;
+// Discs that the light sees at less than this cosine are left out: their depth within a texel is unbounded.
+LUCARNE_CONST float kSkyEdgeOn = 1e-3f;
+
+LUCARNE_FN uint pack_sky_texel(float depth, float depth_step, uint surface) {
+    return uint(clamp(depth / depth_step, 0.0f, kSkyDepthSteps)) << 16 | surface;
+}
+LUCARNE_FN vec3 sky_place(SkyMap map, vec3 position) {
+    return vec3(dot(position, xyz_of(map.across)) + map.across.w,
+                dot(position, xyz_of(map.down)) + map.down.w, dot(position, xyz_of(map.away)) + map.away.w);
+}
+
+// Returns how far a receiver is lifted off its surface before it is looked up: by the radius of its surfel,
+// as the rays of the reference are (gi/engines/reference/README.md), but by the diagonal of half a texel at
+// least, so that a wall in the light's plane does not find what lies beside it.
+LUCARNE_CONST float kSkyLift = 0.75f;  // texels
+LUCARNE_FN float sky_lift(SkyMap map, float radius) {
+    float across = dot(xyz_of(map.across), xyz_of(map.across)),
+          down = dot(xyz_of(map.down), xyz_of(map.down));
+    return max(radius, kSkyLift * inversesqrt(min(across, down)));
+}
+
+// Returns whether the surface in a texel blocks the light of a receiver. `place` is the sky_place() of the
+// lifted point, `lift` by how much that was lifted along its normal, `corner` the texel's. Surfaces are
+// planes, as for VPLs (vpl_sees() in gather.glsl): a blocker lies in front of the plane of the receiver, and
+// the receiver behind the plane of the blocker.
+LUCARNE_FN bool sky_blocks(SkyMap map, uint texel, vec2 corner, vec3 place, float depth_step, vec3 normal,
+                           float radius, float lift) {
+    if (texel == kNothing) return false;
+    vec3 across = xyz_of(map.across), down = xyz_of(map.down);
+    vec2 apart = corner + 0.5f - vec2(place.x, place.y);
+    vec3 offset = across * (apart.x / dot(across, across)) + down * (apart.y / dot(down, down)) +
+                  xyz_of(map.away) * ((float(texel >> 16) + 0.5f) * depth_step - place.z);
+    float margin = kRimPush * max(radius, map_radius(texel));
+    return dot(normal, offset) > radius - lift && dot(map_normal(texel), offset) > -margin;
+}
+
+#ifdef __cplusplus
+static_assert(sizeof(SkyMap) == 64);
+}  // namespace lucarne::gi::vpl
+#endif
+#endif
