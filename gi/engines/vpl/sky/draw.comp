@@ -11,12 +11,11 @@ layout(local_size_x = kBlockSurfels) in;
 layout(std430, binding = kBindLights) readonly buffer SkyMaps { SkyMap maps[]; };
 layout(std430, binding = kBindAtlas) buffer SkyTexels { uint texels[]; };
 
-uniform uint sky_side;
 uniform float depth_step;
 
-// Returns the texels, first and last, whose middles a disc may cover along one side of a map.
-ivec2 range(float place, float reach) {
-    float last = min(floor(place + reach - 0.5), float(sky_side) - 1.0);
+// Returns the texels, first and last, whose middles a disc may cover along a side of `count` texels.
+ivec2 range(float place, float reach, uint count) {
+    float last = min(floor(place + reach - 0.5), float(count) - 1.0);
     return ivec2(max(ceil(place - reach - 0.5), 0.0), last);
 }
 
@@ -30,8 +29,8 @@ void main() {
     bool plain = caster.normal == vec3(0.0);  // it faces the light
     if (!plain && abs(normal.z) <= kSkyEdgeOn) return;
     vec3 place = sky_place(map, caster.position);
-    ivec2 columns = range(place.x, disc_reach(caster.radius, normal.x) / size.x);
-    ivec2 rows = range(place.y, disc_reach(caster.radius, normal.y) / size.y);
+    ivec2 columns = range(place.x, disc_reach(caster.radius, normal.x) / size.x, map.columns);
+    ivec2 rows = range(place.y, disc_reach(caster.radius, normal.y) / size.y, map.rows);
     vec2 slope = plain ? vec2(0.0) : normal.xy / normal.z;
     vec3 facing = plain ? -map.away.xyz : normal.z > 0.0 ? caster.normal : -caster.normal;
     uint surface = map_surface(caster.radius, facing);
@@ -40,7 +39,6 @@ void main() {
             vec2 apart = (vec2(x, y) + 0.5 - place.xy) * size;
             float deeper = dot(slope, apart);
             if (dot(apart, apart) + deeper * deeper > caster.radius * caster.radius) continue;
-            uint at = (gl_GlobalInvocationID.y * sky_side + uint(y)) * sky_side + uint(x);
-            atomicMin(texels[at], pack_sky_texel(place.z + deeper, depth_step, surface));
+            atomicMin(texels[sky_texel_index(map, vec2(x, y))], pack_sky_texel(place.z + deeper, depth_step, surface));
         }
 }

@@ -5,7 +5,6 @@
 layout(std430, binding = kBindLights) readonly buffer SkyMaps { SkyMap sky_maps[]; };
 layout(binding = kUnitAtlas) uniform usamplerBuffer sky_texels;
 
-uniform uint sky_side;
 uniform float depth_step;
 
 // Sums the light of every `stride`-th direction from `first` on.
@@ -17,8 +16,8 @@ Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
         if (!(cosine > 0.0)) continue;
         float lift = sky_lift(map, receiver.radius);
         vec3 place = sky_place(map, receiver.position + receiver.normal * lift);
-        vec2 corner = clamp(floor(place.xy), vec2(0.0), vec2(float(sky_side) - 1.0));
-        int at = int((i * sky_side + uint(corner.y)) * sky_side + uint(corner.x));
+        vec2 corner = sky_corner(map, place.xy + sky_shift(receiver.pixel, i));
+        int at = int(sky_texel_index(map, corner));
         if (sky_blocks(map, texelFetch(sky_texels, at).x, corner, place, depth_step, receiver.normal, receiver.radius,
                        lift))
             continue;

@@ -1,8 +1,10 @@
 #include "gi/engines/vpl/sky/sky_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "gi/bounce_options.h"
@@ -25,6 +27,9 @@ namespace {
 
 /// Light views are this many times finer than maps, of which there are far more; their sums blur together.
 constexpr uint32_t kCoarser = 4;
+/// Texels of a map's side beyond the receivers: for its shift, and for points that are lifted.
+constexpr float kMargin = 4;
+constexpr float kMostStretch = 4;  ///< root of the largest ratio of a map's sides
 /// Texels of the maps that are drawn together, 16 MiB; a multiple of 4 x 4 maps of any side.
 constexpr uint32_t kMostTexels = 1u << 22;
 
@@ -49,12 +54,14 @@ SkyMap sky_map(const Light& light, const Bounds& receivers, const Bounds& scene,
                const glm::vec2& shift) {
     const glm::vec3 away(light.direction);
     const Outline seen = outline_along(receivers, away);
-    const auto texels = static_cast<float>(side);
-    // A texel of margin on each side, for the shift, and for points that are lifted.
-    const glm::vec2 texel = 2.0f * seen.half / std::max(texels - 4, 1.0f);
-    const glm::vec3 middle = (receivers.min + receivers.max) / 2.0f;
-    const glm::vec2 at = glm::vec2(texels / 2) + shift - 0.5f;
+    const float stretch = std::clamp(std::sqrt(seen.half.x / seen.half.y), 1 / kMostStretch, kMostStretch);
     SkyMap map{};
+    map.columns = static_cast<uint32_t>(static_cast<float>(side) * stretch);
+    map.rows = static_cast<uint32_t>(static_cast<float>(side) / stretch);
+    const glm::vec2 texels(map.columns, map.rows);
+    const glm::vec2 texel = 2.0f * seen.half / glm::max(texels - kMargin, 1.0f);
+    const glm::vec3 middle = (receivers.min + receivers.max) / 2.0f;
+    const glm::vec2 at = texels / 2.0f + shift - 0.5f;
     map.across = row(seen.right, texel.x, middle, at.x);
     map.down = row(seen.up, texel.y, middle, at.y);
     map.away = glm::vec4(away, depth_range(scene) / 2 - glm::dot(away, (scene.min + scene.max) / 2.0f));
@@ -111,7 +118,6 @@ Result<void> SkyLight::draw(Frame& frame, const ShadowMaps& casters, const std::
                                .blocks = cut.blocks(),
                                .cut_size = cut.size(),
                                .maps = maps,
-                               .side = side_,
                                .depth_step = depth_step_,
                                .texels = texels.as<uint32_t>().data()});
         return {};
@@ -121,7 +127,6 @@ Result<void> SkyLight::draw(Frame& frame, const ShadowMaps& casters, const std::
     maps_.bind(kBindLights);
     texels_.bind(kBindAtlas);
     draw->set("cut_size", cut.size());
-    draw->set("sky_side", side_);
     draw->set("depth_step", depth_step_);
     draw->dispatch(cut.blocks() * kBlockSurfels, static_cast<uint32_t>(maps.size()));
     return {};
@@ -135,10 +140,7 @@ Result<void> SkyLight::shade(Frame& frame, const Buffer& materials, const std::v
         maps_.bind(kBindLights);
         texels_.bind_texels(kUnitAtlas, TexelView::one_word);
         return run_shading(frame, materials, static_cast<uint32_t>(maps.size()), {{"LUCARNE_SKY", "1"}},
-                           tiles, [&](const Program& program) {
-                               program.set("sky_side", side_);
-                               program.set("depth_step", depth_step_);
-                           });
+                           tiles, [&](const Program& program) { program.set("depth_step", depth_step_); });
     }
     LUCARNE_ASSIGN(const MappedBuffer pixels, frame.gl.gbuffer.texels.map());
     LUCARNE_ASSIGN(const MappedBuffer texels, texels_.map());
@@ -150,7 +152,6 @@ Result<void> SkyLight::shade(Frame& frame, const Buffer& materials, const std::v
                                    .pixels = pixels.as<const GBufferTexel>().data(),
                                    .maps = maps,
                                    .texels = texels.as<const uint32_t>().data(),
-                                   .side = side_,
                                    .depth_step = depth_step_};
     native::shade_sky(input, frame.settings[kInterleave],
                       {.irradiance = diffuse.as<glm::vec4>().data(),
@@ -183,6 +184,7 @@ Result<void> SkyLight::add(Frame& frame, const Buffer& materials, std::span<cons
             shift.x = static_cast<float>(random.uniform());
             shift.y = static_cast<float>(random.uniform());
             maps.push_back(sky_map(lights[i], receivers, frame.bounds, side_, shift));
+            maps.back().first = static_cast<uint32_t>(i - first) * side_ * side_;
         }
         LUCARNE_TRY(draw(frame, casters, maps));
         LUCARNE_TRY(shade(frame, materials, maps, tiles));

@@ -17,6 +17,9 @@ LUCARNE_STRUCT(SkyMap) {
     vec4 across, down;  // xyz: unit vectors over the texel's size, 1/m
     vec4 away;          // xyz: unit, the way the light goes
     vec4 irradiance;    // rgb: of a surface that faces the light, W/m^2
+    uint columns, rows,
+        first;  // texels along its sides; the number of its first texel among those of all maps
+    uint pad0;
 };
 
 // A texel is empty (kNothing) or depth | radius of the surfel | normal, 16 + 4 + 12 bits: the depth in steps
@@ -34,14 +37,34 @@ LUCARNE_FN vec3 sky_place(SkyMap map, vec3 position) {
                 dot(position, xyz_of(map.down)) + map.down.w, dot(position, xyz_of(map.away)) + map.away.w);
 }
 
+// Returns the texel that shows a place; places outside the map belong to its border.
+LUCARNE_FN vec2 sky_corner(SkyMap map, vec2 place) {
+    return clamp(floor(place), vec2(0.0f), vec2(float(map.columns), float(map.rows)) - 1.0f);
+}
+LUCARNE_FN uint sky_texel_index(SkyMap map, vec2 corner) {
+    return map.first + uint(corner.y) * map.columns + uint(corner.x);
+}
+
 // Returns how far a receiver is lifted off its surface before it is looked up: by the radius of its surfel,
 // as the rays of the reference are (gi/engines/reference/README.md), but by the diagonal of half a texel at
 // least, so that a wall in the light's plane does not find what lies beside it.
-LUCARNE_CONST float kSkyLift = 0.75f;  // texels
+LUCARNE_CONST float kSkyLift = 1.0f;  // texels
+// Odd numbers that spread pixels and maps over all words.
+LUCARNE_CONST uint kSkyPixelStep = 747796405u, kSkyMapStep = 2891336453u;
 LUCARNE_FN float sky_lift(SkyMap map, float radius) {
     float across = dot(xyz_of(map.across), xyz_of(map.across)),
           down = dot(xyz_of(map.down), xyz_of(map.down));
     return max(radius, kSkyLift * inversesqrt(min(across, down)));
+}
+
+// Returns by how much, in texels, a pixel looks beside its place in map number `map`: evenly within a texel.
+// Many pixels and maps add up to bilinear look-ups; without it every direction would show the texels of its
+// map. The mixing is the second half of a 32-bit hash by Wellons 2018 ("Prospecting for hash functions").
+LUCARNE_FN vec2 sky_shift(uint pixel, uint map) {
+    uint hash = pixel * kSkyPixelStep + map * kSkyMapStep;
+    hash = (hash ^ hash >> 16) * 0x7feb352du;
+    hash ^= hash >> 15;
+    return vec2(float(hash & 0xffffu), float(hash >> 16)) / 65536.0f - 0.5f;
 }
 
 // Returns whether the surface in a texel blocks the light of a receiver. `place` is the sky_place() of the
@@ -60,7 +83,7 @@ LUCARNE_FN bool sky_blocks(SkyMap map, uint texel, vec2 corner, vec3 place, floa
 }
 
 #ifdef __cplusplus
-static_assert(sizeof(SkyMap) == 64);
+static_assert(sizeof(SkyMap) == 80);
 }  // namespace lucarne::gi::vpl
 #endif
 #endif

@@ -14,7 +14,6 @@ struct SkyDrawing {
     uint32_t blocks;
     float cut_size;  ///< m, side of the cut's root
     std::span<const SkyMap> maps;
-    uint32_t side;     ///< texels along a side of a map
     float depth_step;  ///< m
     uint32_t* texels;  ///< of all maps, one after the other; empty ones
 };

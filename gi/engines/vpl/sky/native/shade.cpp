@@ -1,96 +1,224 @@
 #include "gi/engines/vpl/sky/native/shade.h"
 
-#include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <limits>
-#include <mutex>
+#include <vector>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "gi/engines/vpl/shading/native/window.h"
 #include "io/core/parallel.h"
 
-namespace lucarne::gi::vpl::native {
-namespace {
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "gi/engines/vpl/sky/native/shade.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include "gi/engines/vpl/shading/native/surfaces-inl.h"
+#include "gi/engines/vpl/shadow_maps/native/texel-inl.h"
 
-struct SkyReceiver {
-    glm::vec3 position, normal;
-    float radius;
+#ifndef LUCARNE_NATIVE_SKY_SHADE_ONCE
+#define LUCARNE_NATIVE_SKY_SHADE_ONCE
+namespace lucarne::gi::vpl::native {
+
+/// A map for points relative to the camera.
+struct SkyMapAt {
+    glm::vec4 across, down, away, irradiance;
+    glm::vec3 column, row;          ///< the sides of a texel, m
+    float least_lift;               ///< m
+    uint32_t columns, rows, first;  ///< of its texels
+};
+inline SkyMapAt map_at(const SkyMap& map, const glm::vec3& eye) {
+    const auto moved = [&](const glm::vec4& v) {
+        return glm::vec4(glm::vec3(v), v.w + glm::dot(glm::vec3(v), eye));
+    };
+    const glm::vec3 across(map.across), down(map.down);
+    return {moved(map.across),
+            moved(map.down),
+            moved(map.away),
+            map.irradiance,
+            across / glm::dot(across, across),
+            down / glm::dot(down, down),
+            sky_lift(map, 0.0f),
+            map.columns,
+            map.rows,
+            map.first};
+}
+
+struct SkyShadeJob {
+    const SkyShading& input;
+    int n;
+    std::span<const SkyMapAt> maps;
+    const GatherOutput& output;
 };
 
-SkyReceiver receiver_of(const SkyShading& input, uint32_t x, uint32_t y, const GBufferTexel& texel) {
-    return {texel_position(input.camera, glm::vec2(x, y), texel), texel_normal(texel), texel_radius(texel)};
+}  // namespace lucarne::gi::vpl::native
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace lucarne::gi::vpl::native::HWY_NAMESPACE {
+
+/// Some pixels; those that show nothing have no lane.
+struct SkyReceivers {
+    V3 position, normal;
+    F radius;
+    U pixel;
+    Mask lanes;
+};
+
+SkyReceivers receivers(const SkyShadeJob& job, const Surfaces& surfaces, int first_row, hn::Vec<Ints> columns,
+                       hn::Vec<Ints> rows, Mask used) {
+    const Ints di;
+    const auto int_of = [&](size_t v) { return hn::Set(di, static_cast<int32_t>(v)); };
+    const auto place = hn::Add(hn::Mul(hn::Sub(rows, hn::Set(di, first_row)), int_of(surfaces.stride)),
+                               hn::Add(columns, int_of(kBorder)));
+    const auto plane = [&](const std::vector<float>& values) {
+        return hn::GatherIndex(Floats(), values.data(), place);
+    };
+    const auto pixel = hn::Add(hn::Mul(rows, int_of(job.input.camera.width)), columns);
+    return {{plane(surfaces.x), plane(surfaces.y), plane(surfaces.z)},
+            {plane(surfaces.nx), plane(surfaces.ny), plane(surfaces.nz)},
+            plane(surfaces.radius),
+            hn::BitCast(Words(), pixel),
+            hn::And(used, hn::Gt(plane(surfaces.depth), hn::Zero(Floats())))};
 }
 
-/// Returns the irradiance by the maps of a tile, times the number of tiles, as gather_tile() in pixel.glsl.
-glm::vec3 gather_tile(const SkyShading& input, const SkyReceiver& to, uint32_t tile, uint32_t tiles) {
-    glm::vec3 sum(0.0f);
-    for (size_t i = tile; i < input.maps.size(); i += tiles) {
-        const SkyMap& map = input.maps[i];
-        const float cosine = -glm::dot(to.normal, glm::vec3(map.away));
-        if (!(cosine > 0)) continue;
-        const float lift = sky_lift(map, to.radius);
-        const glm::vec3 place = sky_place(map, to.position + to.normal * lift);
-        const float last = static_cast<float>(input.side - 1);
-        const glm::vec2 corner = glm::clamp(glm::floor(glm::vec2(place)), glm::vec2(0.0f), glm::vec2(last));
-        const size_t at =
-            (i * input.side + static_cast<size_t>(corner.y)) * input.side + static_cast<size_t>(corner.x);
-        if (sky_blocks(map, input.texels[at], corner, place, input.depth_step, to.normal, to.radius, lift))
-            continue;
-        sum += glm::vec3(map.irradiance) * cosine;
+/// map_normal() of texel.h.
+HWY_INLINE V3 map_normals(U texels) {
+    const auto fraction = [](U bits) {
+        const F p = over(sub(to_float(hn::And(bits, word(63))), set(31.5f)), set(31.5f));
+        return hn::BitCast(Words(), nearest_int(mul(p, set(32767.0f))));
+    };
+    return decode_octahedral(hn::Or(hn::And(fraction(texels), word(0xffffu)),
+                                    hn::ShiftLeft<16>(fraction(hn::ShiftRight<6>(texels)))));
+}
+
+/// sky_shift() along both axes.
+HWY_INLINE void shifts(U pixel, size_t map, F& x, F& y) {
+    U hash = hn::Add(hn::Mul(pixel, word(kSkyPixelStep)), word(static_cast<uint32_t>(map) * kSkyMapStep));
+    hash = hn::Mul(hn::Xor(hash, hn::ShiftRight<16>(hash)), word(0x7feb352du));
+    hash = hn::Xor(hash, hn::ShiftRight<15>(hash));
+    const auto share = [](U v) { return sub(over(to_float(v), set(65536.0f)), set(0.5f)); };
+    x = share(hn::And(hash, word(0xffffu)));
+    y = share(hn::ShiftRight<16>(hash));
+}
+
+/// Adds the irradiance by a map, as gather() in gather.glsl.
+HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceivers& to, V3& sum) {
+    const Floats df;
+    const Ints di;
+    const SkyMapAt& map = job.maps[number];
+    const F zero = hn::Zero(df), half = set(0.5f);
+    const F cosine = hn::Neg(dot(to.normal, map.away));
+    Mask lit = hn::And(to.lanes, hn::Gt(cosine, zero));
+    if (hn::AllFalse(df, lit)) return;
+    const F lift = hn::Max(to.radius, set(map.least_lift));
+    const V3 lifted{add(to.position.x, mul(to.normal.x, lift)), add(to.position.y, mul(to.normal.y, lift)),
+                    add(to.position.z, mul(to.normal.z, lift))};
+    const auto along = [&](const glm::vec4& row) { return add(dot(lifted, row), set(row.w)); };
+    const F x = along(map.across), y = along(map.down), depth = along(map.away);
+    F shift_x, shift_y;
+    shifts(to.pixel, number, shift_x, shift_y);
+    const auto corner = [&](F place, uint32_t count) {
+        const F last = set(static_cast<float>(count - 1));
+        return hn::IfThenElseZero(lit, hn::Min(hn::Max(hn::Floor(place), zero), last));
+    };
+    const F column = corner(add(x, shift_x), map.columns), row = corner(add(y, shift_y), map.rows);
+    const auto columns = hn::Set(di, static_cast<int32_t>(map.columns));
+    const auto at = hn::Add(hn::Mul(to_int(di, row), columns), to_int(di, column));
+    const uint32_t* texels = job.input.texels + map.first;
+    const U texel = hn::BitCast(Words(), hn::GatherIndex(di, reinterpret_cast<const int32_t*>(texels), at));
+    // sky_blocks()
+    const F dx = sub(add(column, half), x), dy = sub(add(row, half), y);
+    const F dz = sub(mul(add(to_float(hn::ShiftRight<16>(texel)), half), set(job.input.depth_step)), depth);
+    const auto axis = [&](float right, float down, float away) {
+        return add(add(mul(dx, set(right)), mul(dy, set(down))), mul(dz, set(away)));
+    };
+    const V3 offset{axis(map.column.x, map.row.x, map.away.x), axis(map.column.y, map.row.y, map.away.y),
+                    axis(map.column.z, map.row.z, map.away.z)};
+    const F margin = mul(set(kRimPush), hn::Max(to.radius, map_radii(Words(), texel)));
+    Mask blocks = hn::RebindMask(df, hn::Ne(texel, word(kNothing)));
+    blocks = hn::And(blocks, hn::Gt(dot(to.normal, offset), sub(to.radius, lift)));
+    blocks = hn::And(blocks, hn::Gt(dot(map_normals(texel), offset), hn::Neg(margin)));
+    const F seen = hn::IfThenElseZero(hn::AndNot(blocks, lit), cosine);
+    sum = {add(sum.x, mul(seen, set(map.irradiance.x))), add(sum.y, mul(seen, set(map.irradiance.y))),
+           add(sum.z, mul(seen, set(map.irradiance.z)))};
+}
+
+/// Adds the light of the maps of tile `tile` to the pixels in `target`, as gather_tile() in pixel.glsl.
+void gather_tile(const SkyShadeJob& job, const SkyReceivers& to, int tile, glm::vec4* target) {
+    const Floats df;
+    if (hn::AllFalse(df, to.lanes)) return;
+    const auto tiles = static_cast<size_t>(job.n * job.n);
+    V3 sum{hn::Zero(df), hn::Zero(df), hn::Zero(df)};
+    for (auto map = static_cast<size_t>(tile); map < job.maps.size(); map += tiles)
+        add_map(job, map, to, sum);
+    sum = scaled(sum, set(static_cast<float>(tiles)));
+    alignas(64) float lanes[3][kLanes];
+    alignas(64) uint32_t pixels[kLanes];
+    hn::Store(sum.x, df, lanes[0]);
+    hn::Store(sum.y, df, lanes[1]);
+    hn::Store(sum.z, df, lanes[2]);
+    hn::Store(to.pixel, Words(), pixels);
+    const uint32_t shown = bits_of(to.lanes);
+    for (size_t lane = 0; lane < hn::Lanes(df); ++lane)
+        if (shown >> lane & 1)
+            target[pixels[lane]] += glm::vec4(lanes[0][lane], lanes[1][lane], lanes[2][lane], 0);
+}
+
+void shade_isolated(const SkyShadeJob& job, const Surfaces& surfaces, int first, int end) {
+    const Ints di;
+    const auto width = static_cast<int>(job.input.camera.width);
+    for (const uint32_t pixel : job.output.isolated) {
+        const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
+        if (y < first || y >= end) continue;
+        const uint32_t lacking = lacking_tiles(job.output.joints + 2 * size_t{pixel}, job.n, x, y);
+        const SkyReceivers to =
+            receivers(job, surfaces, first, hn::Set(di, x), hn::Set(di, y), hn::FirstN(Floats(), 1));
+        for (int tile = 0; tile < job.n * job.n; ++tile)
+            if (lacking >> tile & 1) gather_tile(job, to, tile, job.output.own_irradiance);
     }
-    return sum * static_cast<float>(tiles);
 }
 
-}  // namespace
+void ShadeSkyRows(const SkyShadeJob& job, int first, int end) {
+    const Ints di;
+    const auto width = static_cast<int>(job.input.camera.width);
+    Surfaces surfaces(job.input.camera.width, static_cast<size_t>(end - first));
+    for (int y = first; y < end; ++y)
+        read_row(job.input.camera, job.input.pixels, y, static_cast<size_t>(y - first), surfaces);
+    const auto columns = hn::Mul(hn::Iota(di, 0), hn::Set(di, job.n));
+    const auto last = hn::Set(di, width - 1);
+    // Down before across: pixels close to each other read few texels of a map.
+    for (int tile = 0; tile < job.n * job.n; ++tile)
+        for (int x = tile % job.n; x < width; x += job.n * static_cast<int>(hn::Lanes(Floats())))
+            for (int y = first; y < end; ++y) {
+                if (y % job.n != tile / job.n) continue;
+                const auto column = hn::Add(columns, hn::Set(di, x));
+                const Mask inside = hn::RebindMask(Floats(), hn::Lt(column, hn::Set(di, width)));
+                gather_tile(job,
+                            receivers(job, surfaces, first, hn::Min(column, last), hn::Set(di, y), inside),
+                            tile, job.output.irradiance);
+            }
+    if (job.n > 1) shade_isolated(job, surfaces, first, end);
+}
 
+}  // namespace lucarne::gi::vpl::native::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lucarne::gi::vpl::native {
+
+HWY_EXPORT(ShadeSkyRows);
 void shade_sky(const SkyShading& input, uint32_t n, const GatherOutput& output) {
-    const uint32_t width = input.camera.width, tiles = n * n;
-    parallel_ranges(input.camera.height, 16, [&](size_t first, size_t end) {
-        for (auto y = static_cast<uint32_t>(first); y < end; ++y)
-            for (uint32_t x = 0; x < width; ++x) {
-                const size_t pixel = size_t{y} * width + x;
-                const GBufferTexel& texel = input.pixels[pixel];
-                if (!(texel.depth > 0)) continue;
-                const SkyReceiver to = receiver_of(input, x, y, texel);
-                output.irradiance[pixel] += glm::vec4(gather_tile(input, to, y % n * n + x % n, tiles), 0.0f);
-            }
+    std::vector<SkyMapAt> maps;
+    for (const SkyMap& map : input.maps) maps.push_back(map_at(map, glm::vec3(input.camera.origin)));
+    const SkyShadeJob job{input, static_cast<int>(n), maps, output};
+    parallel_ranges(input.camera.height, 32, [&](size_t first, size_t end) {
+        HWY_DYNAMIC_DISPATCH(ShadeSkyRows)(job, static_cast<int>(first), static_cast<int>(end));
     });
-    if (n == 1) return;
-    parallel_ranges(output.isolated.size(), 64, [&](size_t first, size_t end) {
-        for (size_t i = first; i < end; ++i) {
-            const uint32_t pixel = output.isolated[i], x = pixel % width, y = pixel / width;
-            const SkyReceiver to = receiver_of(input, x, y, input.pixels[pixel]);
-            const uint32_t lacking = lacking_tiles(output.joints + 2 * size_t{pixel}, static_cast<int>(n),
-                                                   static_cast<int>(x), static_cast<int>(y));
-            for (uint32_t tile = 0; tile < tiles; ++tile)
-                if (lacking >> tile & 1)
-                    output.own_irradiance[pixel] += glm::vec4(gather_tile(input, to, tile, tiles), 0.0f);
-        }
-    });
-}
-
-bool receiver_bounds(const CameraView& camera, const GBufferTexel* pixels, glm::vec3& low, glm::vec3& high) {
-    low = glm::vec3(std::numeric_limits<float>::infinity());
-    high = -low;
-    std::mutex mutex;
-    parallel_ranges(camera.height, 16, [&](size_t first, size_t end) {
-        glm::vec3 least(std::numeric_limits<float>::infinity()), most = -least;
-        for (auto y = static_cast<uint32_t>(first); y < end; ++y)
-            for (uint32_t x = 0; x < camera.width; ++x) {
-                const GBufferTexel& texel = pixels[size_t{y} * camera.width + x];
-                if (!(texel.depth > 0)) continue;
-                const glm::vec3 at = texel_position(camera, glm::vec2(x, y), texel);
-                least = glm::min(least, at);
-                most = glm::max(most, at);
-            }
-        const std::scoped_lock lock(mutex);
-        low = glm::min(low, least);
-        high = glm::max(high, most);
-    });
-    return low.x <= high.x;
 }
 
 }  // namespace lucarne::gi::vpl::native
+#endif

@@ -14,7 +14,6 @@ struct SkyShading {
     const GBufferTexel* pixels;
     std::span<const SkyMap> maps;
     const uint32_t* texels;  ///< of all maps
-    uint32_t side;           ///< texels along a side of a map
     float depth_step;        ///< m
 };
 
