@@ -29,6 +29,7 @@ void main() {
     bool plain = caster.normal == vec3(0.0);  // it faces the light
     if (!plain && abs(normal.z) <= kSkyEdgeOn) return;
     vec3 place = sky_place(map, caster.position);
+    if (place.z > map.farthest + caster.radius) return;
     ivec2 columns = range(place.x, disc_reach(caster.radius, normal.x) / size.x, map.columns);
     ivec2 rows = range(place.y, disc_reach(caster.radius, normal.y) / size.y, map.rows);
     vec2 slope = plain ? vec2(0.0) : normal.xy / normal.z;

@@ -66,6 +66,8 @@ SkyMap sky_map(const Light& light, const Bounds& receivers, const Bounds& scene,
     map.down = row(seen.up, texel.y, middle, at.y);
     map.away = glm::vec4(away, depth_range(scene) / 2 - glm::dot(away, (scene.min + scene.max) / 2.0f));
     map.irradiance = light.strength;
+    const float reach = glm::dot(glm::abs(away), receivers.max - receivers.min) / 2;
+    map.farthest = sky_place(map, middle).z + reach;
     return map;
 }
 

@@ -60,6 +60,9 @@ inline bool may_meet(const float* bounds, const SkyMap& map, const SkyAxes& axes
         const float reach = (glm::dot(glm::abs(axis), half) + bounds[7]) / size;
         return at + reach >= 0 && at - reach <= static_cast<float>(texels);
     };
+    // Behind all receivers nothing is shaded.
+    const float nearest = glm::dot(axes.away, middle) + map.away.w - glm::dot(glm::abs(axes.away), half);
+    if (nearest > map.farthest + bounds[7]) return false;
     return meets(map.across, axes.across, axes.width, map.columns) &&
            meets(map.down, axes.down, axes.height, map.rows);
 }

@@ -100,7 +100,9 @@ HWY_INLINE void shifts(U pixel, size_t map, F& x, F& y) {
     U hash = hn::Add(hn::Mul(pixel, word(kSkyPixelStep)), word(static_cast<uint32_t>(map) * kSkyMapStep));
     hash = hn::Mul(hn::Xor(hash, hn::ShiftRight<16>(hash)), word(0x7feb352du));
     hash = hn::Xor(hash, hn::ShiftRight<15>(hash));
-    const auto share = [](U v) { return sub(over(to_float(v), set(65536.0f)), set(0.5f)); };
+    const auto share = [](U v) {
+        return sub(mul(to_float(v), set(kSkyShift / 65536.0f)), set(0.5f * kSkyShift));
+    };
     x = share(hn::And(hash, word(0xffffu)));
     y = share(hn::ShiftRight<16>(hash));
 }
