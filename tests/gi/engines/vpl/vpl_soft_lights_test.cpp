@@ -75,6 +75,15 @@ TEST_F(VplSoftLights, DiscAndSpotTogetherLightARoomAsInTheReference) {
     expect_the_references_energy(*device, scene, "disc and spot");
 }
 
+TEST_F(VplSoftLights, SkyLightsAnOpenRoomAsInTheReference) {
+    AnalyticScene scene = room(true);
+    scene.environment = scenes::even_sky(1);
+    scene.settings.set(kOnlyBounce, 0);
+    const double truth = mean(*device, "reference", scene, 1), found = mean(*device, "vpl", scene, 1);
+    std::printf("sky, direct light: %+.2f %%\n", 100 * (found / truth - 1));
+    EXPECT_NEAR(found / truth, 1, .02);
+}
+
 // Under a sky of 1 every surface that reflects rho and emits 1 - rho has the radiance 1, so nothing can be
 // distinguished.
 TEST_F(VplSoftLights, OpenFurnaceUnderAnEvenSkyIsOneEverywhere) {
