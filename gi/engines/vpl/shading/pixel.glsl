@@ -29,7 +29,6 @@ Receiver pixel_receiver(uvec2 pixel, GBufferTexel texel) {
     receiver.radius = texel_radius(texel);
     receiver.to_viewer = toward_viewer(camera, receiver.position);
     receiver.reflectance = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
-    receiver.pixel = pixel.y * camera.width + pixel.x;
     return receiver;
 }
 

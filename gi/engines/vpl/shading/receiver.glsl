@@ -9,7 +9,6 @@ struct Receiver {
     float radius;    // of its surfel, m
     vec3 to_viewer;  // unit
     Reflectance reflectance;
-    uint pixel;  // its number in the picture
 };
 
 struct Gathered {

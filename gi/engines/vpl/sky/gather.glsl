@@ -16,7 +16,7 @@ Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
         if (!(cosine > 0.0)) continue;
         float lift = sky_lift(map, receiver.radius);
         vec3 place = sky_place(map, receiver.position + receiver.normal * lift);
-        vec2 corner = sky_corner(map, place.xy + sky_shift(receiver.pixel, i));
+        vec2 corner = sky_corner(map, place.xy);
         int at = int(sky_texel_index(map, corner));
         if (sky_blocks(map, texelFetch(sky_texels, at).x, corner, place, depth_step, receiver.normal, receiver.radius,
                        lift))

@@ -48,26 +48,11 @@ LUCARNE_FN uint sky_texel_index(SkyMap map, vec2 corner) {
 // Returns how far a receiver is lifted off its surface before it is looked up: by the radius of its surfel,
 // as the rays of the reference are (gi/engines/reference/README.md), but by the diagonal of half a texel at
 // least, so that a wall in the light's plane does not find what lies beside it.
-LUCARNE_CONST float kSkyLift = 0.75f;  // texels
-// Odd numbers that spread pixels and maps over all words.
-LUCARNE_CONST uint kSkyPixelStep = 747796405u, kSkyMapStep = 2891336453u;
+LUCARNE_CONST float kSkyLift = 1.0f;  // texels
 LUCARNE_FN float sky_lift(SkyMap map, float radius) {
     float across = dot(xyz_of(map.across), xyz_of(map.across)),
           down = dot(xyz_of(map.down), xyz_of(map.down));
     return max(radius, kSkyLift * inversesqrt(min(across, down)));
-}
-
-// Returns by how much, in texels, a pixel looks beside its place in map number `map`: evenly within half a
-// texel along both axes. Many pixels and maps then add up to smooth edges of texels; look-ups over a whole
-// texel, which would be bilinear in the mean, let more light into corners. The mixing is the second half of a
-// 32-bit hash by Wellons 2018
-// ("Prospecting for hash functions").
-LUCARNE_CONST float kSkyShift = 0.5f;
-LUCARNE_FN vec2 sky_shift(uint pixel, uint map) {
-    uint hash = pixel * kSkyPixelStep + map * kSkyMapStep;
-    hash = (hash ^ hash >> 16) * 0x7feb352du;
-    hash ^= hash >> 15;
-    return vec2(float(hash & 0xffffu), float(hash >> 16)) * (kSkyShift / 65536.0f) - 0.5f * kSkyShift;
 }
 
 // Returns whether the surface in a texel blocks the light of a receiver. `place` is the sky_place() of the

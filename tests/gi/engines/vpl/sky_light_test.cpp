@@ -8,6 +8,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/engines/vpl/sky/ordered.h"
 #include "gi/host_frame.h"
@@ -97,7 +98,7 @@ TEST_F(SkyLightTest, SkylightGivesTheFloorItsFormFactor) {
     EXPECT_NEAR(found / truth, .98, .03);
 }
 
-TEST_F(SkyLightTest, WindowGivesTheLightOfSharpViews) {
+TEST_F(SkyLightTest, WindowGivesTheLightOfTheReference) {
     AnalyticScene scene;
     for (const Surfel& s : scenes::closed_box(2, 50, glm::vec3(.5f)))
         if (s.position.x < 1.99f ||
@@ -106,9 +107,8 @@ TEST_F(SkyLightTest, WindowGivesTheLightOfSharpViews) {
     scene.environment = scenes::even_sky(10);
     scene.settings.set(kOnlyBounce, 0);
     scene.camera = scenes::look({1.8f, 1, 1}, {.2f, .9f, .4f}, .8f, 48);
-    const double found = mean("vpl", scene, 4);
-    scene.settings.set(kLightSamples, 256);
-    const double truth = mean("direct", scene, 8);
+    scene.settings.set(reference::kSamples, 256);
+    const double found = mean("vpl", scene, 4), truth = mean("reference", scene, 1);
     EXPECT_GT(truth, 0);
     EXPECT_NEAR(found / truth, 1, .04);
 }

@@ -95,18 +95,6 @@ HWY_INLINE V3 map_normals(U texels) {
                                     hn::ShiftLeft<16>(fraction(hn::ShiftRight<6>(texels)))));
 }
 
-/// sky_shift() along both axes.
-HWY_INLINE void shifts(U pixel, size_t map, F& x, F& y) {
-    U hash = hn::Add(hn::Mul(pixel, word(kSkyPixelStep)), word(static_cast<uint32_t>(map) * kSkyMapStep));
-    hash = hn::Mul(hn::Xor(hash, hn::ShiftRight<16>(hash)), word(0x7feb352du));
-    hash = hn::Xor(hash, hn::ShiftRight<15>(hash));
-    const auto share = [](U v) {
-        return sub(mul(to_float(v), set(kSkyShift / 65536.0f)), set(0.5f * kSkyShift));
-    };
-    x = share(hn::And(hash, word(0xffffu)));
-    y = share(hn::ShiftRight<16>(hash));
-}
-
 /// Adds the irradiance by a map, as gather() in gather.glsl.
 HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceivers& to, V3& sum) {
     const Floats df;
@@ -121,13 +109,11 @@ HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceiver
                     add(to.position.z, mul(to.normal.z, lift))};
     const auto along = [&](const glm::vec4& row) { return add(dot(lifted, row), set(row.w)); };
     const F x = along(map.across), y = along(map.down), depth = along(map.away);
-    F shift_x, shift_y;
-    shifts(to.pixel, number, shift_x, shift_y);
     const auto corner = [&](F place, uint32_t count) {
         const F last = set(static_cast<float>(count - 1));
         return hn::IfThenElseZero(lit, hn::Min(hn::Max(hn::Floor(place), zero), last));
     };
-    const F column = corner(add(x, shift_x), map.columns), row = corner(add(y, shift_y), map.rows);
+    const F column = corner(x, map.columns), row = corner(y, map.rows);
     const auto columns = hn::Set(di, static_cast<int32_t>(map.columns));
     const auto at = hn::Add(hn::Mul(to_int(di, row), columns), to_int(di, column));
     const uint32_t* texels = job.input.texels + map.first;
