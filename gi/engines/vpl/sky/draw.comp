@@ -22,6 +22,7 @@ ivec2 range(float place, float reach, uint count) {
 void main() {
     Caster caster = read_caster(gl_GlobalInvocationID.x);
     if (!(caster.radius > 0.0)) return;
+    caster.radius *= kSkyRadius;
     SkyMap map = maps[gl_GlobalInvocationID.y];
     vec2 size = vec2(inversesqrt(dot(map.across.xyz, map.across.xyz)), inversesqrt(dot(map.down.xyz, map.down.xyz)));
     vec3 normal = vec3(dot(caster.normal, map.across.xyz) * size.x, dot(caster.normal, map.down.xyz) * size.y,

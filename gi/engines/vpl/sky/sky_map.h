@@ -28,6 +28,9 @@ LUCARNE_STRUCT(SkyMap) {
 LUCARNE_CONST float kSkyDepthSteps = 65534.0f;
 // Discs that the light sees at less than this cosine are left out: their depth within a texel is unbounded.
 LUCARNE_CONST float kSkyEdgeOn = 1e-3f;
+// Casters have their radii in steps of 2^(1/6) (casters.glsl): by half a step more no disc is too small,
+// which would open holes between the discs of an even pattern.
+LUCARNE_CONST float kSkyRadius = 1.0595f;
 
 LUCARNE_FN uint pack_sky_texel(float depth, float depth_step, uint surface) {
     return uint(clamp(depth / depth_step, 0.0f, kSkyDepthSteps)) << 16 | surface;

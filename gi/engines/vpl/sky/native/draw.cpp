@@ -55,14 +55,15 @@ inline bool may_meet(const float* bounds, const SkyMap& map, const SkyAxes& axes
     const glm::vec3 low(bounds[0], bounds[1], bounds[2]), high(bounds[4], bounds[5], bounds[6]);
     if (low.x > high.x) return false;  // no surfel
     const glm::vec3 middle = (low + high) / 2.0f, half = (high - low) / 2.0f;
+    const float radius = bounds[7] * kSkyRadius;
     const auto meets = [&](const glm::vec4& row, const glm::vec3& axis, float size, uint32_t texels) {
         const float at = glm::dot(glm::vec3(row), middle) + row.w;
-        const float reach = (glm::dot(glm::abs(axis), half) + bounds[7]) / size;
+        const float reach = (glm::dot(glm::abs(axis), half) + radius) / size;
         return at + reach >= 0 && at - reach <= static_cast<float>(texels);
     };
     // Behind all receivers nothing is shaded.
     const float nearest = glm::dot(axes.away, middle) + map.away.w - glm::dot(glm::abs(axes.away), half);
-    if (nearest > map.farthest + bounds[7]) return false;
+    if (nearest > map.farthest + radius) return false;
     return meets(map.across, axes.across, axes.width, map.columns) &&
            meets(map.down, axes.down, axes.height, map.rows);
 }
@@ -261,7 +262,8 @@ namespace lucarne::gi::vpl::native {
 
 HWY_EXPORT(DrawSky);
 void draw_sky_maps(const SkyDrawing& drawing) {
-    const CasterTables tables(drawing.cut_size, 1.0f);
+    CasterTables tables(drawing.cut_size, 1.0f);
+    for (float& radius : tables.radii) radius *= kSkyRadius;
     parallel_ranges(drawing.maps.size(), kSkyGroup, [&](size_t first, size_t end) {
         HWY_DYNAMIC_DISPATCH(DrawSky)({drawing, tables, first, end});
     });
