@@ -48,29 +48,54 @@ LUCARNE_FN uint sky_texel_index(SkyMap map, vec2 corner) {
     return map.first + uint(corner.y) * map.columns + uint(corner.x);
 }
 
-// Returns how far a receiver is lifted off its surface before it is looked up: by the radius of its surfel,
-// as the rays of the reference are (gi/engines/reference/README.md), but by the diagonal of half a texel at
-// least, so that a wall in the light's plane does not find what lies beside it.
+// Returns the way from a receiver to the point that is looked up. The point is lifted off the surface by the
+// radius of the surfel, as the rays of the reference start (gi/engines/reference/README.md), but by the
+// diagonal of half a texel at least, so that a wall in the light's plane does not find what lies beside it.
+// It also comes a radius nearer to the viewer, where there is air: the rim of a floor's disc that sticks out
+// below a wall must not be lit from outside.
 LUCARNE_CONST float kSkyLift = 1.0f;  // texels
 LUCARNE_FN float sky_lift(SkyMap map, float radius) {
     float across = dot(xyz_of(map.across), xyz_of(map.across)),
           down = dot(xyz_of(map.down), xyz_of(map.down));
     return max(radius, kSkyLift * inversesqrt(min(across, down)));
 }
+LUCARNE_FN vec3 sky_moved(SkyMap map, vec3 normal, vec3 to_viewer, float radius) {
+    return normal * sky_lift(map, radius) + to_viewer * radius;
+}
 
-// Returns whether the surface in a texel blocks the light of a receiver. `place` is the sky_place() of the
-// lifted point, `lift` by how much that was lifted along its normal, `corner` the texel's. Surfaces are
-// planes, as for VPLs (vpl_sees() in gather.glsl): a blocker lies in front of the plane of the receiver, and
-// the receiver behind the plane of the blocker.
-LUCARNE_FN bool sky_blocks(SkyMap map, uint texel, vec2 corner, vec3 place, float depth_step, vec3 normal,
-                           float radius, float lift) {
-    if (texel == kNothing) return false;
+// What a texel says about the light of a receiver.
+LUCARNE_CONST uint kSkyClear = 0u;       // it shows the receiver's own surface, or one behind it
+LUCARNE_CONST uint kSkyUnsure = 1u;      // it is empty, or shows another surface beside the receiver
+LUCARNE_CONST uint kSkyBlocks = 2u;      // it shows a surface that blocks the light
+LUCARNE_CONST uint kSkyBlocksNear = 3u;  // the same, and the plane of that surface passes near the receiver
+LUCARNE_CONST float kSkyOwn = 0.5f;      // least cosine between the normals of one surface
+LUCARNE_CONST float kSkySeam = 0.25f;
+LUCARNE_CONST float kSkyNormalError = 0.07f;  // sine of the error of a texel's normal
+
+// Returns what a texel says. `place` is the sky_place() of the point that is looked up, `moved` the way there
+// from the receiver, `corner` the texel's. Surfaces are planes, as for VPLs (vpl_sees() in gather.glsl): a
+// blocker lies in front of the plane of the receiver, and the receiver behind the plane of the blocker.
+LUCARNE_FN uint sky_verdict(SkyMap map, uint texel, vec2 corner, vec3 place, float depth_step, vec3 normal,
+                            float radius, vec3 moved) {
+    if (texel == kNothing) return kSkyUnsure;
     vec3 across = xyz_of(map.across), down = xyz_of(map.down);
     vec2 apart = corner + 0.5f - vec2(place.x, place.y);
     vec3 offset = across * (apart.x / dot(across, across)) + down * (apart.y / dot(down, down)) +
                   xyz_of(map.away) * ((float(texel >> 16) + 0.5f) * depth_step - place.z);
-    float margin = kRimPush * max(radius, map_radius(texel));
-    return dot(normal, offset) > radius - lift && dot(map_normal(texel), offset) > -margin;
+    vec3 facing = map_normal(texel);
+    float lift = dot(normal, moved), height = dot(normal, offset) + lift, front = dot(facing, offset);
+    float error = kRimPush * max(radius, map_radius(texel)) + kSkyNormalError * length(offset);
+    if (height > radius) {
+        if (front < -error) return kSkyClear;
+        // The distance of the receiver itself from the plane.
+        return abs(front + dot(facing, moved)) < lift + radius + error ? kSkyBlocksNear : kSkyBlocks;
+    }
+    return height > -radius && dot(normal, facing) < kSkyOwn ? kSkyUnsure : kSkyClear;
+}
+
+// Returns the neighbour of a texel on the side where the place lies, along one axis.
+LUCARNE_FN float sky_neighbour(float corner, float place, float count) {
+    return clamp(place - corner < 0.5f ? corner - 1.0f : corner + 1.0f, 0.0f, count - 1.0f);
 }
 
 #ifdef __cplusplus

@@ -113,11 +113,11 @@ TEST_F(SkyLightTest, WindowGivesTheLightOfTheReference) {
     EXPECT_NEAR(found / truth, 1, .04);
 }
 
-TEST_F(SkyLightTest, SealedRoomStaysBlack) {
+TEST_F(SkyLightTest, SealedRoomGetsNone) {
     AnalyticScene scene;
     scene.surfels = scenes::closed_box(2, 60, glm::vec3(.9f));
     scene.environment = scenes::even_sky(1e4f);
-    scene.settings.set(kBounces, 2);
+    scene.settings.set(kOnlyBounce, 0);
     for (const int64_t interleave : kInterleaves)
         for (const glm::vec3& target : {glm::vec3(1.2f, 1.3f, .9f), glm::vec3(2, 2, 2), glm::vec3(0, 2, 0)}) {
             scene.settings.set(kInterleave, interleave);

@@ -63,6 +63,7 @@ namespace lucarne::gi::vpl::native::HWY_NAMESPACE {
 /// Some pixels; those that show nothing have no lane.
 struct SkyReceivers {
     V3 position, normal;
+    V3 nearer;  ///< the way to the viewer, as long as the radius
     F radius;
     U pixel;
     Mask lanes;
@@ -78,9 +79,16 @@ SkyReceivers receivers(const SkyShadeJob& job, const Surfaces& surfaces, int fir
         return hn::GatherIndex(Floats(), values.data(), place);
     };
     const auto pixel = hn::Add(hn::Mul(rows, int_of(job.input.camera.width)), columns);
-    return {{plane(surfaces.x), plane(surfaces.y), plane(surfaces.z)},
+    // Positions are relative to the origin of the view.
+    const V3 position{plane(surfaces.x), plane(surfaces.y), plane(surfaces.z)};
+    const glm::vec3 back(-glm::vec3(job.input.camera.forward));
+    const V3 to_viewer = is_parallel(job.input.camera) ? V3{set(back.x), set(back.y), set(back.z)}
+                                                       : normalized(scaled(position, set(-1.0f)));
+    const F radius = plane(surfaces.radius);
+    return {position,
             {plane(surfaces.nx), plane(surfaces.ny), plane(surfaces.nz)},
-            plane(surfaces.radius),
+            scaled(to_viewer, radius),
+            radius,
             hn::BitCast(Words(), pixel),
             hn::And(used, hn::Gt(plane(surfaces.depth), hn::Zero(Floats())))};
 }
@@ -95,7 +103,7 @@ HWY_INLINE V3 map_normals(U texels) {
                                     hn::ShiftLeft<16>(fraction(hn::ShiftRight<6>(texels)))));
 }
 
-/// Adds the irradiance by a map, as gather() in gather.glsl.
+/// Adds the irradiance by a map, as gather() in sky/gather.glsl.
 HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceivers& to, V3& sum) {
     const Floats df;
     const Ints di;
@@ -104,32 +112,63 @@ HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceiver
     const F cosine = hn::Neg(dot(to.normal, map.away));
     Mask lit = hn::And(to.lanes, hn::Gt(cosine, zero));
     if (hn::AllFalse(df, lit)) return;
-    const F lift = hn::Max(to.radius, set(map.least_lift));
-    const V3 lifted{add(to.position.x, mul(to.normal.x, lift)), add(to.position.y, mul(to.normal.y, lift)),
-                    add(to.position.z, mul(to.normal.z, lift))};
+    const V3 off = scaled(to.normal, hn::Max(to.radius, set(map.least_lift)));
+    const V3 moved{add(off.x, to.nearer.x), add(off.y, to.nearer.y), add(off.z, to.nearer.z)};  // sky_moved()
+    const V3 lifted{add(to.position.x, moved.x), add(to.position.y, moved.y), add(to.position.z, moved.z)};
     const auto along = [&](const glm::vec4& row) { return add(dot(lifted, row), set(row.w)); };
+    const F lift = dot(to.normal, moved);
     const F x = along(map.across), y = along(map.down), depth = along(map.away);
     const auto corner = [&](F place, uint32_t count) {
         const F last = set(static_cast<float>(count - 1));
         return hn::IfThenElseZero(lit, hn::Min(hn::Max(hn::Floor(place), zero), last));
     };
-    const F column = corner(x, map.columns), row = corner(y, map.rows);
-    const auto columns = hn::Set(di, static_cast<int32_t>(map.columns));
-    const auto at = hn::Add(hn::Mul(to_int(di, row), columns), to_int(di, column));
-    const uint32_t* texels = job.input.texels + map.first;
-    const U texel = hn::BitCast(Words(), hn::GatherIndex(di, reinterpret_cast<const int32_t*>(texels), at));
-    // sky_blocks()
-    const F dx = sub(add(column, half), x), dy = sub(add(row, half), y);
-    const F dz = sub(mul(add(to_float(hn::ShiftRight<16>(texel)), half), set(job.input.depth_step)), depth);
-    const auto axis = [&](float right, float down, float away) {
-        return add(add(mul(dx, set(right)), mul(dy, set(down))), mul(dz, set(away)));
+    const auto neighbour = [&](F from, F place, uint32_t count) {  // sky_neighbour()
+        const F step = hn::IfThenElse(hn::Lt(sub(place, from), half), set(-1.0f), set(1.0f));
+        const F last = set(static_cast<float>(count - 1));
+        return hn::IfThenElseZero(lit, hn::Min(hn::Max(add(from, step), zero), last));
     };
-    const V3 offset{axis(map.column.x, map.row.x, map.away.x), axis(map.column.y, map.row.y, map.away.y),
-                    axis(map.column.z, map.row.z, map.away.z)};
-    const F margin = mul(set(kRimPush), hn::Max(to.radius, map_radii(Words(), texel)));
-    Mask blocks = hn::RebindMask(df, hn::Ne(texel, word(kNothing)));
-    blocks = hn::And(blocks, hn::Gt(dot(to.normal, offset), sub(to.radius, lift)));
-    blocks = hn::And(blocks, hn::Gt(dot(map_normals(texel), offset), hn::Neg(margin)));
+    const auto columns = hn::Set(di, static_cast<int32_t>(map.columns));
+    const uint32_t* texels = job.input.texels + map.first;
+    struct Verdict {
+        Mask unsure, blocks, near;
+    };
+    const auto verdict = [&](F column, F row) {  // sky_verdict()
+        const auto at = hn::Add(hn::Mul(to_int(di, row), columns), to_int(di, column));
+        const U texel =
+            hn::BitCast(Words(), hn::GatherIndex(di, reinterpret_cast<const int32_t*>(texels), at));
+        const F dx = sub(add(column, half), x), dy = sub(add(row, half), y);
+        const F dz =
+            sub(mul(add(to_float(hn::ShiftRight<16>(texel)), half), set(job.input.depth_step)), depth);
+        const auto axis = [&](float right, float down, float away) {
+            return add(add(mul(dx, set(right)), mul(dy, set(down))), mul(dz, set(away)));
+        };
+        const V3 offset{axis(map.column.x, map.row.x, map.away.x), axis(map.column.y, map.row.y, map.away.y),
+                        axis(map.column.z, map.row.z, map.away.z)};
+        const V3 facing = map_normals(texel);
+        const F height = add(dot(to.normal, offset), lift), front = dot(facing, offset);
+        const F both = dot(to.normal, facing);
+        const F error = add(mul(set(kRimPush), hn::Max(to.radius, map_radii(Words(), texel))),
+                            mul(set(kSkyNormalError), hn::Sqrt(dot(offset, offset))));
+        const Mask any = hn::RebindMask(df, hn::Ne(texel, word(kNothing)));
+        const Mask above = hn::Gt(height, to.radius), before = hn::Lt(front, hn::Neg(error));
+        const Mask blocks = hn::And(any, hn::AndNot(before, above));
+        const F reach = add(add(lift, to.radius), error);
+        const Mask near = hn::Lt(hn::Abs(add(front, dot(facing, moved))), reach);
+        const Mask beside = hn::And(hn::Gt(height, hn::Neg(to.radius)), hn::Lt(both, set(kSkyOwn)));
+        return Verdict{hn::Or(hn::Not(any), hn::AndNot(above, beside)), blocks, hn::And(blocks, near)};
+    };
+    const F column = corner(x, map.columns), row = corner(y, map.rows);
+    const Verdict own = verdict(column, row);
+    Mask blocks = own.blocks;
+    const auto look = [&](F at_column, F at_row) {
+        if (hn::AllFalse(df, hn::AndNot(blocks, lit))) return;
+        const Verdict beside = verdict(at_column, at_row);
+        blocks = hn::Or(blocks, hn::Or(beside.near, hn::And(own.unsure, beside.blocks)));
+    };
+    const F other_column = neighbour(column, x, map.columns), other_row = neighbour(row, y, map.rows);
+    look(other_column, row);
+    look(column, other_row);
+    look(other_column, other_row);
     const F seen = hn::IfThenElseZero(hn::AndNot(blocks, lit), cosine);
     sum = {add(sum.x, mul(seen, set(map.irradiance.x))), add(sum.y, mul(seen, set(map.irradiance.y))),
            add(sum.z, mul(seen, set(map.irradiance.z)))};
