@@ -8,22 +8,20 @@ layout(binding = kUnitAtlas) uniform usamplerBuffer sky_texels;
 uniform float depth_step;
 
 // Returns whether the light of a map is blocked. Silhouettes lie between the middles of texels: where the texel of a
-// receiver is not sure, its three neighbours around the receiver decide, and a wall that the receiver touches blocks
-// even if it is seen in one of these alone. Otherwise light would come in along the seams of a room.
+// receiver is not sure, its three neighbours around the receiver decide. Otherwise light would come in along the seams
+// of a room.
 bool sky_blocks(SkyMap map, Receiver receiver) {
     vec3 moved = sky_moved(map, receiver.normal, receiver.to_viewer, receiver.radius);
     vec3 place = sky_place(map, receiver.position + moved);
     vec2 corner = sky_corner(map, place.xy);
     vec2 beside = vec2(sky_neighbour(corner.x, place.x, float(map.columns)),
                        sky_neighbour(corner.y, place.y, float(map.rows)));
-    uint least = kSkyBlocks;  // the least verdict that blocks
     for (int i = 0; i < 4; ++i) {
         vec2 at = vec2((i & 1) == 0 ? corner.x : beside.x, (i & 2) == 0 ? corner.y : beside.y);
         uint texel = texelFetch(sky_texels, int(sky_texel_index(map, at))).x;
-        uint verdict =
-            sky_verdict(map, texel, at, place, depth_step, receiver.normal, receiver.radius, moved);
-        if (verdict >= least) return true;
-        if (i == 0 && verdict == kSkyClear) least = kSkyBlocksNear;
+        uint verdict = sky_verdict(map, texel, at, place, depth_step, receiver.normal, receiver.radius, moved);
+        if (verdict == kSkyBlocks) return true;
+        if (verdict == kSkyClear && i == 0) return false;
     }
     return false;
 }

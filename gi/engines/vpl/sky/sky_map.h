@@ -64,11 +64,10 @@ LUCARNE_FN vec3 sky_moved(SkyMap map, vec3 normal, vec3 to_viewer, float radius)
 }
 
 // What a texel says about the light of a receiver.
-LUCARNE_CONST uint kSkyClear = 0u;       // it shows the receiver's own surface, or one behind it
-LUCARNE_CONST uint kSkyUnsure = 1u;      // it is empty, or shows another surface beside the receiver
-LUCARNE_CONST uint kSkyBlocks = 2u;      // it shows a surface that blocks the light
-LUCARNE_CONST uint kSkyBlocksNear = 3u;  // the same, and the plane of that surface passes near the receiver
-LUCARNE_CONST float kSkyOwn = 0.5f;      // least cosine between the normals of one surface
+LUCARNE_CONST uint kSkyClear = 0u;   // it shows the receiver's own surface, or one behind it
+LUCARNE_CONST uint kSkyUnsure = 1u;  // it is empty, or shows another surface beside the receiver
+LUCARNE_CONST uint kSkyBlocks = 2u;  // it shows a surface that blocks the light
+LUCARNE_CONST float kSkyOwn = 0.5f;  // least cosine between the normals of one surface
 LUCARNE_CONST float kSkySeam = 0.25f;
 LUCARNE_CONST float kSkyNormalError = 0.07f;  // sine of the error of a texel's normal
 
@@ -85,11 +84,7 @@ LUCARNE_FN uint sky_verdict(SkyMap map, uint texel, vec2 corner, vec3 place, flo
     vec3 facing = map_normal(texel);
     float lift = dot(normal, moved), height = dot(normal, offset) + lift, front = dot(facing, offset);
     float error = kRimPush * max(radius, map_radius(texel)) + kSkyNormalError * length(offset);
-    if (height > radius) {
-        if (front < -error) return kSkyClear;
-        // The distance of the receiver itself from the plane.
-        return abs(front + dot(facing, moved)) < lift + radius + error ? kSkyBlocksNear : kSkyBlocks;
-    }
+    if (height > radius) return front < -error ? kSkyClear : kSkyBlocks;
     return height > -radius && dot(normal, facing) < kSkyOwn ? kSkyUnsure : kSkyClear;
 }
 

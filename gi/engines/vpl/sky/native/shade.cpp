@@ -130,7 +130,7 @@ HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceiver
     const auto columns = hn::Set(di, static_cast<int32_t>(map.columns));
     const uint32_t* texels = job.input.texels + map.first;
     struct Verdict {
-        Mask unsure, blocks, near;
+        Mask unsure, blocks;
     };
     const auto verdict = [&](F column, F row) {  // sky_verdict()
         const auto at = hn::Add(hn::Mul(to_int(di, row), columns), to_int(di, column));
@@ -152,18 +152,16 @@ HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceiver
         const Mask any = hn::RebindMask(df, hn::Ne(texel, word(kNothing)));
         const Mask above = hn::Gt(height, to.radius), before = hn::Lt(front, hn::Neg(error));
         const Mask blocks = hn::And(any, hn::AndNot(before, above));
-        const F reach = add(add(lift, to.radius), error);
-        const Mask near = hn::Lt(hn::Abs(add(front, dot(facing, moved))), reach);
         const Mask beside = hn::And(hn::Gt(height, hn::Neg(to.radius)), hn::Lt(both, set(kSkyOwn)));
-        return Verdict{hn::Or(hn::Not(any), hn::AndNot(above, beside)), blocks, hn::And(blocks, near)};
+        return Verdict{hn::Or(hn::Not(any), hn::AndNot(above, beside)), blocks};
     };
     const F column = corner(x, map.columns), row = corner(y, map.rows);
     const Verdict own = verdict(column, row);
     Mask blocks = own.blocks;
     const auto look = [&](F at_column, F at_row) {
-        if (hn::AllFalse(df, hn::AndNot(blocks, lit))) return;
-        const Verdict beside = verdict(at_column, at_row);
-        blocks = hn::Or(blocks, hn::Or(beside.near, hn::And(own.unsure, beside.blocks)));
+        const Mask asked = hn::And(hn::AndNot(blocks, lit), own.unsure);
+        if (!hn::AllFalse(df, asked))
+            blocks = hn::Or(blocks, hn::And(asked, verdict(at_column, at_row).blocks));
     };
     const F other_column = neighbour(column, x, map.columns), other_row = neighbour(row, y, map.rows);
     look(other_column, row);
