@@ -5,6 +5,7 @@ layout(local_size_x = 64) in;
 #include "gi/engines/vpl/bindings.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/cut.glsl"
+#include "gi/shared/frame.h"
 #include "gi/engines/vpl/seeding/importance.glsl"
 #include "gi/engines/vpl/vpl_light.h"
 
@@ -21,13 +22,45 @@ const float kLeastFacing = 1e-3;
 // A VPL infinitely far away, so that no surfel is drawn into its shadow map.
 VplLight dead_light() { return VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0)); }
 
-// Returns how much of the light reaches the centre of a surfel. If it is shadowed, the light sees only the rim of a
-// disc that sticks out at an edge, perhaps out of a sealed room.
-float stands_clear(uint id, vec3 normal, float radius) {
+// Returns how much of the light reaches the centre of the surfel in a texel. If it is shadowed, the light sees only the
+// rim of a disc.
+float centre_visibility(uvec2 pixel) {
+    uint index = pixel.y * light_view.width + pixel.x;
     uint item;
     PackedSurfel surfel;
-    if (id == kNoSurfel || !cut_surfel(id, item, surfel)) return 1.0;
-    return spot_visibility(surfel_position(item, surfel), normal, radius);
+    if (light_ids[index] == kNoSurfel || !cut_surfel(light_ids[index], item, surfel)) return 1.0;
+    GBufferTexel texel = light_texels[index];
+    return spot_visibility(surfel_position(item, surfel), texel_normal(texel), texel_radius(texel));
+}
+
+// Returns whether the surface goes on beside the rim of a disc to where centres of discs are lit: then the rim lies at
+// the border of a patch of light. Else it sticks out at an edge, perhaps out of a sealed room, where no surface is.
+bool at_lit_surface(vec3 position, vec3 normal, float radius) {
+    vec3 tangent, bitangent;
+    frame_about(normal, tangent, bitangent);
+    for (int i = 0; i < 16; ++i) {
+        float angle = float(i) * (kPi / 4.0);
+        vec3 along = tangent * cos(angle) + bitangent * sin(angle);
+        vec3 beside = position + along * (radius * (i < 8 ? 1.0 : 2.0));
+        float depth;
+        ivec2 pixel = ivec2(floor(view_place(light_view, beside, depth)));
+        if (depth <= 0.0 || any(lessThan(pixel, ivec2(0))) ||
+            any(greaterThanEqual(pixel, ivec2(light_view.width, light_view.height))))
+            continue;
+        GBufferTexel texel = light_texels[uint(pixel.y) * light_view.width + uint(pixel.x)];
+        if (!(texel.depth > 0.0) || dot(texel_normal(texel), normal) < kSameSurface) continue;
+        vec3 offset = texel_position(light_view, uvec2(pixel), texel) - position;
+        if (abs(dot(offset, normal)) > radius || length(offset) > 4.0 * radius) continue;
+        if (centre_visibility(uvec2(pixel)) > 0.0) return true;
+    }
+    return false;
+}
+
+// Returns the share of the light at a VPL's surfel: 1 if the light sees its centre, less at the border of a patch of
+// light, kStray on a rim without a surface.
+float stands_clear(uvec2 pixel, vec3 position, vec3 normal, float radius) {
+    float visible = centre_visibility(pixel);
+    return visible > 0.0 || at_lit_surface(position, normal, radius) ? visible : kStray;
 }
 
 // Returns the VPL of a texel. It stands where the central ray of the texel ends: elsewhere in the texel it might lie
@@ -45,7 +78,7 @@ VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
     float cosine = max(-dot(normal, away), kLeastFacing);
     float footprint = dot(offset, offset) / (float(light_count) * density * cosine);
     return VplLight(vec4(position, footprint), vec4(normal, texel_radius(texel)), vec4(flux * r.kd / kPi, r.exponent),
-                    vec4(flux, stands_clear(light_ids[pixel.y * light_view.width + pixel.x], normal, texel_radius(texel))),
+                    vec4(flux, stands_clear(pixel, position, normal, texel_radius(texel))),
                     vec4(-away, r.ks));
 }
 

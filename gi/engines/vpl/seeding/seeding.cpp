@@ -19,7 +19,6 @@ namespace {
 
 // VPLs before and after one on the curve of Halton points (halton.h): its neighbours in the light's view.
 constexpr size_t kNeighbours = 256;
-constexpr float kSameSurface = 0.7f;  // least cosine between normals
 
 bool clear(const VplLight& light) {
     return light.flux.w >= 1;
@@ -45,13 +44,16 @@ VplLight* nearest_clear(std::span<VplLight> lights, size_t i) {
     return nearest;
 }
 
-/// Removes VPLs that are not wholly in the light (seed.comp) and gives their flux to the nearest VPL of the
-/// same surface, else to all. The sum stays the flux that lands, and so does the light of each patch: sun
-/// through a window lights a patch with a long border, while roofs have hardly any.
+/// Removes VPLs that are not wholly in the light (seed.comp). Those at the border of a patch of light give
+/// their flux to the nearest VPL of the same surface, else to all, so that each patch keeps its light: sun
+/// through a window lights a patch with a long border, while roofs have hardly any. The flux of stray rims is
+/// dropped: the rims of outer walls stick out above the roof, and the nearest VPL that faces the same way may
+/// be behind a window, in a room that would get as much light again.
 void clear_rims(std::span<VplLight> lights) {
     std::vector<double> received(lights.size());  // W
     double all = 0, unassigned = 0;
     for (size_t i = 0; i < lights.size(); ++i) {
+        if (lights[i].flux.w == kStray) continue;
         all += power(lights[i]);
         if (clear(lights[i]) || !(power(lights[i]) > 0)) continue;
         if (const VplLight* nearest = nearest_clear(lights, i))

@@ -133,7 +133,7 @@ TEST_F(ViewVpls, RoomBesideABrightYardHasLittleNoiseAndTheSameLight) {
     EXPECT_NEAR(mean(chosen), mean(plain), 3 * deviation(plain) / std::sqrt(8.0));
 }
 
-TEST_F(ViewVpls, SkyThroughAWindowHasLittleNoiseAndTheSameLight) {
+TEST_F(ViewVpls, LightOfTheSkyThroughAWindowHasLittleNoiseAndThatOfTheReference) {
     auto room = scenes::closed_box(2, 50, glm::vec3(.5f));
     std::erase_if(room, [](const Surfel& s) {  // a window of .5 m in the wall at x = 2
         return s.position.x > 1.99f && std::abs(s.position.y - 1.2f) < .25f &&
@@ -144,15 +144,18 @@ TEST_F(ViewVpls, SkyThroughAWindowHasLittleNoiseAndTheSameLight) {
     auto sky = std::make_shared<Environment>();
     sky->texels = {glm::vec3(10.0f)};
     options.environment = sky;
-    options.settings.set(kOnlyBounce, 0);
+    options.settings.set(kOnlyBounce, 1);
     options.settings.set(kVpls, 64);
     options.settings.set(kAtlas, 512);
     options.settings.set(kLightSamples, 16);
     const CameraView camera = look({1.8f, 1, 1}, {.2f, .9f, .4f}, 48, 48);
     const auto plain = means(cloud, options, camera, false), chosen = means(cloud, options, camera, true);
     EXPECT_GT(mean(plain), 0);
-    EXPECT_LT(deviation(chosen) / mean(chosen), 0.6 * deviation(plain) / mean(plain));
-    EXPECT_NEAR(mean(chosen), mean(plain), 3 * deviation(plain) / std::sqrt(8.0));
+    EXPECT_LT(deviation(chosen) / mean(chosen), 0.4 * deviation(plain) / mean(plain));
+    // It was 1.9 times as bright when rims above the roof gave their flux to the room.
+    const double truth =
+        mean_luminance(light_up(*device, **make_engine("reference"), cloud, camera, options).radiance);
+    EXPECT_NEAR(mean(chosen), truth, .2 * truth);
 }
 
 /// A level square with noise of its heights, in radii, and of its normals, in radians.
