@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include <fmt/format.h>
@@ -276,8 +277,18 @@ Result<void> open_workspace(const BuildOptions& options, const Unifier& inputs, 
     }
     LUCARNE_ASSIGN(held.work, Workspace::open(folder, options.output, identity, options.resume,
                                               {ranks.rank(), ranks.count()}));
-    LUCARNE_TRY(meet(ranks));
-    LUCARNE_ASSIGN(held.left, held.work->left_by_others());
+    const std::string mark = held.work->mark();
+    const auto bytes = std::as_bytes(std::span(mark));
+    LUCARNE_ASSIGN(const auto marks, share(ranks, {bytes.begin(), bytes.end()}));
+    std::vector<std::string> used;
+    for (const Ranks::Bytes& of_rank : marks)
+        used.emplace_back(reinterpret_cast<const char*>(of_rank.data()), of_rank.size());
+    LUCARNE_ASSIGN(held.left, held.work->left_by_others(used));
+    uint64_t removed = held.work->removed();
+    LUCARNE_TRY(ranks.sum(std::span(&removed, 1)));  // only rank 0 prints
+    if (removed > 0)
+        log::warn("removed {} that an interrupted conversion left; --resume would have used it",
+                  bytes_text(removed));
     return take_over(*held.work, held.left, ranks, inputs, options, memory);
 }
 

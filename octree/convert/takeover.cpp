@@ -114,11 +114,16 @@ Result<std::map<uint64_t, Build>> compare(Ranks& ranks, const Workspace& work,
             const auto offer = reader.get<Offer>();
             Build& build = builds.try_emplace(offer.count, offer.count).first->second;
             build.found[offer.rank] = true;
-            if (offer.sound == 0 || build.holders[offer.rank] != kNowhere) continue;
+            if (offer.sound == 0) continue;
+            // A kill while parts were moved may leave two of one rank; that with normals has come farther.
+            if (build.holders[offer.rank] != kNowhere && offer.normals <= build.offers[offer.rank].normals)
+                continue;
             build.holders[offer.rank] = holder;
             build.offers[offer.rank] = offer;
-            build.normals = build.normals && offer.normals;
         }
+    for (auto& [count, build] : builds)
+        build.normals =
+            std::ranges::all_of(build.offers, [](const Offer& offer) { return offer.normals != 0; });
     return builds;
 }
 
@@ -148,7 +153,7 @@ Result<void> check_present(const std::map<uint64_t, Build>& builds) {
         if (const auto missing = build.missing(); !missing.empty() && build.unsound().size() < count)
             return failed("--resume",
                           fmt::format("of the interrupted conversion by {}, the work folder of rank {} is on "
-                                      "no machine that takes part",
+                                      "no machine that takes part, or its journal is damaged",
                                       ranks_text(count), fmt::join(missing, ", ")),
                           "bring its machine back, or leave --resume out to begin anew");
     return {};
@@ -183,9 +188,12 @@ Result<void> move(Workspace& work, Ranks& ranks, const Build& build, const std::
     std::vector<const ChunkStore*> chunks;
     std::vector<SurfaceStore::Part> surfaces;
     const Part* first = nullptr;
+    std::vector<bool> taken(build.holders.size());  // this rank may hold two parts of one rank
     for (const Part& part : parts) {
         const auto [rank, count] = part.work->part();
-        if (count != build.holders.size() || build.holders[rank] != ranks.rank()) continue;
+        if (count != build.holders.size() || build.holders[rank] != ranks.rank() || taken[rank]) continue;
+        if (build.normals && !part.surface) continue;
+        taken[rank] = true;
         if (rank == 0) first = &part;
         chunks.push_back(&part.chunks);
         if (build.normals) surfaces.push_back({&part.chunks, &*part.surface});
@@ -211,8 +219,12 @@ Result<void> take_over(Workspace& work, std::vector<Workspace>& left, Ranks& ran
                        const BuildOptions& options, const MemoryPlan& memory) {
     std::array<uint64_t, 3> seen{left.size(), work.finished("chunk") ? 1u : 0u, work.resumable() ? 1u : 0u};
     LUCARNE_TRY(ranks.sum(seen));
-    const bool further = seen[1] == ranks.count();  // these ranks have chunks of their own
-    if (!further && seen[0] + seen[1] > 0 && seen[2] == ranks.count()) {
+    if (seen[0] + seen[1] > 0 && seen[2] < ranks.count())
+        return failed("--resume", "a rank cannot use its work folder",
+                      "mend what that rank reports, or leave --resume out to begin anew");
+    // These ranks have chunks of their own, and there is nothing that may have come farther.
+    const bool further = seen[1] == ranks.count() && seen[0] == 0;
+    if (!further && seen[0] + seen[1] > 0) {
         left.reserve(left.size() + 1);  // parts point into it
         std::vector<Part> parts;
         for (Workspace& other : left)

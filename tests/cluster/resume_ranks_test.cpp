@@ -67,11 +67,12 @@ class ResumedRanks : public test::RankFaults {
                 << resumed.output;
         fs::remove(output());
     }
-    /// The work folders that a conversion has left, each with its points.
+    /// The work folders that a conversion has left, each with its points, in the order of ranks.
     std::vector<fs::path> left() const {
         std::vector<fs::path> found;
         for (const auto& entry : fs::directory_iterator(folder_ / "temp"))
             if (fs::exists(entry.path() / "points")) found.push_back(entry.path());
+        std::ranges::sort(found);
         return found;
     }
     std::string expected_;
@@ -145,6 +146,30 @@ TEST_F(ResumedRanks, GoOnOnOtherMachines) {
         if (all) fs::rename(temp(2), temp(1));
         fs::rename(temp(9), temp(all ? 2 : 1));
         expect_resumed(without_fault("--resume", 3), "going on after 'normals'");
+    }
+}
+
+TEST_F(ResumedRanks, GoOnAgainOnOtherMachinesWhenTheyAreKilledWhileTheyTakeOver) {
+    temp_of_rank_ = "/$OMPI_COMM_WORLD_RANK";
+    const auto temp = [&](int rank) { return folder_ / "temp" + "/" + std::to_string(rank); };
+    for (int rank = 0; rank < 3; ++rank) fs::create_directory(temp(rank));
+    const auto interrupt_and_swap = [&] {
+        interrupt();
+        fs::rename(temp(0), temp(9));
+        fs::rename(temp(1), temp(0));
+        fs::rename(temp(9), temp(1));
+    };
+    interrupt_and_swap();
+    const std::string counted = folder_ / "calls";
+    ASSERT_EQ(with_fault(2, "count:" + counted, "--resume", 3).code, 0);
+    fs::remove(output());
+    const int calls = std::stoi(test::bytes_of(counted));
+    ASSERT_GT(calls, 10);
+    // Rank 2 had its part already: it may hold its old and its new one.
+    for (const int at : {calls / 2, calls * 2 / 3}) {
+        interrupt_and_swap();
+        EXPECT_NE(with_fault(2, "kill:" + std::to_string(at), "--resume", 3).code, 0);
+        expect_resumed(without_fault("--resume", 3), "going on after");
     }
 }
 

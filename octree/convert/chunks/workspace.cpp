@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "io/core/interrupt.h"
 #include "io/core/log.h"
@@ -64,9 +65,19 @@ std::string name_of(const std::string& output) {
 
 /// The build that is to go on is not the one that was interrupted.
 tl::unexpected<Error> another_build(const fs::path& folder, const std::string& difference) {
-    return failed("--resume",
-                  fmt::format("{} has stages of another conversion: {}", folder.string(), difference),
-                  "give the same command and inputs, or leave --resume out to begin anew");
+    return failed(
+        "--resume", fmt::format("{} has stages of another conversion: {}", folder.string(), difference),
+        "give the same command and inputs; or remove that folder, if another one is newer; or leave "
+        "--resume out to begin anew");
+}
+
+/// Returns the mark of a folder, empty if it cannot be looked at. A folder's numbers are the same on all
+/// machines that share it, and its time of change tells it from those of other machines' disks.
+std::string mark_of(const fs::path& folder) {
+    struct stat found {};
+    if (::stat(folder.c_str(), &found) != 0) return {};
+    return fmt::format("{} {} {}.{:09}", folder.filename().string(), found.st_ino, found.st_mtim.tv_sec,
+                       found.st_mtim.tv_nsec);
 }
 
 /// Returns the first line in which two identities differ.
@@ -125,7 +136,11 @@ std::string Workspace::text_of(const std::string& output, Part part, const std::
     return fmt::format("{}\nrank {} of {}\n{}", output, part.rank, part.count, identity);
 }
 
-Result<std::vector<Workspace>> Workspace::left_by_others() const {
+std::string Workspace::mark() const {
+    return folder_.empty() ? std::string() : mark_of(folder_);
+}
+
+Result<std::vector<Workspace>> Workspace::left_by_others(std::span<const std::string> used) {
     std::vector<Workspace> left;
     if (folder_.empty()) return left;
     std::vector<fs::path> folders;
@@ -135,6 +150,7 @@ Result<std::vector<Workspace>> Workspace::left_by_others() const {
             folders.push_back(entry.path());
     std::ranges::sort(folders);
     for (const fs::path& folder : folders) {
+        if (std::ranges::find(used, mark_of(folder)) != used.end()) continue;
         const bool named = folder.filename().string().starts_with(name_of(output_));
         // A folder that has lost its journal gets an empty one, which is its lock.
         auto journal = UpdateFile::open_private(folder / kJournal, named, kBusy);
@@ -142,7 +158,9 @@ Result<std::vector<Workspace>> Workspace::left_by_others() const {
         Workspace other;
         other.journal_ = std::move(*journal);
         auto records = other.read_journal();
-        const std::string text = records && !records->empty() ? as_text((*records)[0].bytes) : "";
+        if (!records && resume_ == Resume::go_on) return tl::unexpected(records.error());
+        if (!records) continue;
+        const std::string text = records->empty() ? "" : as_text((*records)[0].bytes);
         const auto owner = owner_of(text);
         if (owner ? owner->output != output_ : !named) {
             if (part_.rank == 0)
@@ -159,8 +177,7 @@ Result<std::vector<Workspace>> Workspace::left_by_others() const {
         other.resume_ = resume_;
         other.keep_ = resume_ == Resume::go_on;
         if (!other.keep_) {
-            log::warn("removed {} that an interrupted conversion by {} process(es) left",
-                      bytes_text(folder_bytes(folder)), owner->part.count);
+            removed_ += folder_bytes(folder);
             continue;
         }
         const std::string now = text_of(output_, owner->part, identity_);
@@ -204,6 +221,7 @@ Workspace& Workspace::operator=(Workspace&& other) noexcept {
     journal_.swap(other.journal_);
     records_.swap(other.records_);
     std::swap(end_, other.end_);
+    std::swap(removed_, other.removed_);
     std::swap(resume_, other.resume_);
     std::swap(keep_, other.keep_);
     return *this;
@@ -253,9 +271,7 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
         if (keep_ && !same)
             log::warn("the interrupted conversion was another one, starting from the beginning: {}",
                       difference(before, identity));
-        if (!keep_)
-            log::warn("removed {} that an interrupted conversion left; --resume would have used it",
-                      bytes_text(folder_bytes(folder_)));
+        if (!keep_) removed_ = folder_bytes(folder_);
     }
     // Files that cannot be removed are emptied when they are opened.
     remove_private_files(folder_, std::span(kFiles).first(kFiles.size() - 1));

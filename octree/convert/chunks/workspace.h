@@ -36,11 +36,17 @@ class Workspace {
     static Result<Workspace> open(const std::filesystem::path& temp_folder,
                                   const std::filesystem::path& output, const std::string& identity,
                                   Resume resume, Part part);
+    /// Tells the folder from all others, also where locks do not reach from one machine to another; empty
+    /// without a folder.
+    std::string mark() const;
     /// Opens the other folders that are left of the same output, as far as no other process has them open: of
     /// other numbers of processes, or of a process that runs on another machine now. If the build is not to
-    /// go on, they are removed instead, and so are those without a finished stage. Call it when all processes
-    /// have opened their own folders. Errors: the build is to go on, and a folder has stages of another one.
-    Result<std::vector<Workspace>> left_by_others() const;
+    /// go on, they are removed instead, and so are those without a finished stage. `used`: the marks of all
+    /// processes, which have opened their own folders. Errors: the build is to go on, and a folder has stages
+    /// of another one, or its journal cannot be read.
+    Result<std::vector<Workspace>> left_by_others(std::span<const std::string> used);
+    /// Returns how much of an interrupted build was removed that `go_on` would have used, bytes.
+    uint64_t removed() const { return removed_; }
     /// Gives the folder another name and returns it. This workspace begins anew in an empty folder.
     Result<Workspace> set_aside();
     Workspace(Workspace&& other) noexcept { *this = std::move(other); }
@@ -79,7 +85,7 @@ class Workspace {
     Part part_;
     std::optional<UpdateFile> journal_;
     std::vector<Record> records_;
-    uint64_t end_ = 0;
+    uint64_t end_ = 0, removed_ = 0;
     Resume resume_ = Resume::never;
     bool keep_ = false;
 };
