@@ -3,9 +3,9 @@
 #include "gi/shared/gbuffer.h"
 // A text is inserted where it is first included, so what both branches need comes first.
 #include "gi/engines/vpl/shading/receiver.glsl"
-#include "gi/engines/vpl/sky/sky_map.h"
+#include "gi/engines/vpl/shading/sky_map.h"
 #ifdef LUCARNE_SKY
-#include "gi/engines/vpl/sky/gather.glsl"
+#include "gi/engines/vpl/shading/gather_sky.glsl"
 #else
 #include "gi/engines/vpl/shading/gather.glsl"
 #endif

@@ -2,7 +2,7 @@
 // if the ray through its middle meets a disc. Unlike the splats of VPLs' maps, discs are drawn as large as they are,
 // and all of them, so windows keep their size.
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
-#include "gi/engines/vpl/sky/sky_map.h"
+#include "gi/engines/vpl/shading/sky_map.h"
 #include "gi/shared/disc.h"
 #include "gi/shared/surfel.h"
 

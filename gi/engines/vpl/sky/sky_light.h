@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "gi/engines/vpl/shading/shading.h"
+#include "gi/engines/vpl/shading/sky_map.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
-#include "gi/engines/vpl/sky/sky_map.h"
 #include "gi/gl_frame.h"
 #include "gi/lighting/sky_directions.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "gi/engines/vpl/sky/sky_map.h"
+#include "gi/engines/vpl/shading/sky_map.h"
 
 namespace lucarne::gi::vpl::native {
 

@@ -103,7 +103,7 @@ HWY_INLINE V3 map_normals(U texels) {
                                     hn::ShiftLeft<16>(fraction(hn::ShiftRight<6>(texels)))));
 }
 
-/// Adds the irradiance by a map, as gather() in sky/gather.glsl.
+/// Adds the irradiance by a map, as gather() in shading/gather_sky.glsl.
 HWY_INLINE void add_map(const SkyShadeJob& job, size_t number, const SkyReceivers& to, V3& sum) {
     const Floats df;
     const Ints di;

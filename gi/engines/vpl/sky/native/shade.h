@@ -4,7 +4,7 @@
 #include <span>
 
 #include "gi/engines/vpl/shading/native/gather.h"
-#include "gi/engines/vpl/sky/sky_map.h"
+#include "gi/engines/vpl/shading/sky_map.h"
 
 namespace lucarne::gi::vpl::native {
 

@@ -1,6 +1,6 @@
 // Computes the light of the sky at a point, in place of that of VPLs (shading/gather.glsl).
 #include "gi/engines/vpl/shading/receiver.glsl"
-#include "gi/engines/vpl/sky/sky_map.h"
+#include "gi/engines/vpl/shading/sky_map.h"
 
 layout(std430, binding = kBindLights) readonly buffer SkyMaps { SkyMap sky_maps[]; };
 layout(binding = kUnitAtlas) uniform usamplerBuffer sky_texels;

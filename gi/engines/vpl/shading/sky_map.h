@@ -1,7 +1,7 @@
 // Shadow maps of directions of the sky, shared by C++ and GLSL (std430): where they show a point, what their
 // texels hold, and what blocks a point.
-#ifndef LUCARNE_GI_ENGINES_VPL_SKY_SKY_MAP_H
-#define LUCARNE_GI_ENGINES_VPL_SKY_SKY_MAP_H
+#ifndef LUCARNE_GI_ENGINES_VPL_SHADING_SKY_MAP_H
+#define LUCARNE_GI_ENGINES_VPL_SHADING_SKY_MAP_H
 
 #include "gi/engines/vpl/shadow_maps/texel.h"
 #include "gi/shared/gbuffer.h"
