@@ -183,7 +183,9 @@ TEST(SkyMaps, WordsOfFloatsKeepTheirOrder) {
     const float values[] = {-1e30f, -2, -1e-30f, 0, 1e-30f, .5f, 3, 1e30f};
     for (size_t i = 0; i < std::size(values); ++i) {
         EXPECT_EQ(ordered_value(ordered_code(values[i])), values[i]);
-        if (i) EXPECT_LT(ordered_code(values[i - 1]), ordered_code(values[i]));
+        if (i > 0) {
+            EXPECT_LT(ordered_code(values[i - 1]), ordered_code(values[i]));
+        }
     }
 }
 
@@ -249,7 +251,9 @@ TEST_F(NativeSkyLight, IsThatOfTheShaders) {
         for (const glm::vec4& light : shaders.light) lit += light.x > 0;
         for (const glm::vec4& light : shaders.own_light) isolated += light.x > 0;
         EXPECT_GT(lit, shaders.light.size() / 4) << interleave;
-        if (interleave > 1) EXPECT_GT(isolated, 20u);
+        if (interleave > 1) {
+            EXPECT_GT(isolated, 20u);
+        }
         // A receiver at the border of two texels may read either, and a texel's middle lie on a rim.
         EXPECT_LE(different(native.light, shaders.light, 1e-3f, 1e-5f), lit / 50) << interleave;
         EXPECT_LE(different(native.own_light, shaders.own_light, 1e-3f, 1e-5f), isolated / 10) << interleave;
