@@ -18,7 +18,9 @@ TEST_F(RecoveringWindow, GoesOnWithTheSamePictureAfterDeviceAndWindowWereLost) {
         ASSERT_TRUE(eventually([&] { return log().find(loss) != std::string::npos; })) << loss << '\n'
                                                                                        << log();
     }
-    EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *first) < 0.5; })) << log();
+    // Either picture may be the average of any number of frames: they differ by 14 of 255 at most, pictures
+    // without this light by 77, black ones by 140.
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *first) < 35; })) << log();
     xdo("key ctrl+q");
     EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
     EXPECT_EQ(viewer_->code(), 0);
