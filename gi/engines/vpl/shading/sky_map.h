@@ -49,8 +49,8 @@ LUCARNE_FN uint sky_texel_index(SkyMap map, vec2 corner) {
 }
 
 // Returns the way from a receiver to the point that is looked up. The point is lifted off the surface by the
-// radius of the surfel, as the rays of the reference start (gi/engines/reference/README.md), but by the
-// diagonal of half a texel at least, so that a wall in the light's plane does not find what lies beside it.
+// radius of the surfel, as the rays of the reference start (gi/engines/reference/README.md), but by a
+// texel at least, so that a wall in the light's plane does not find what lies beside it.
 // It also comes a radius nearer to the viewer, where there is air: the rim of a floor's disc that sticks out
 // below a wall must not be lit from outside.
 LUCARNE_CONST float kSkyLift = 1.0f;  // texels
@@ -64,11 +64,10 @@ LUCARNE_FN vec3 sky_moved(SkyMap map, vec3 normal, vec3 to_viewer, float radius)
 }
 
 // What a texel says about the light of a receiver.
-LUCARNE_CONST uint kSkyClear = 0u;   // it shows the receiver's own surface, or one behind it
-LUCARNE_CONST uint kSkyUnsure = 1u;  // it is empty, or shows another surface beside the receiver
-LUCARNE_CONST uint kSkyBlocks = 2u;  // it shows a surface that blocks the light
-LUCARNE_CONST float kSkyOwn = 0.5f;  // least cosine between the normals of one surface
-LUCARNE_CONST float kSkySeam = 0.25f;
+LUCARNE_CONST uint kSkyClear = 0u;            // it shows the receiver's own surface, or one behind it
+LUCARNE_CONST uint kSkyUnsure = 1u;           // it is empty, or shows another surface beside the receiver
+LUCARNE_CONST uint kSkyBlocks = 2u;           // it shows a surface that blocks the light
+LUCARNE_CONST float kSkyOwn = 0.5f;           // least cosine between the normals of one surface
 LUCARNE_CONST float kSkyNormalError = 0.07f;  // sine of the error of a texel's normal
 
 // Returns what a texel says. `place` is the sky_place() of the point that is looked up, `moved` the way there
