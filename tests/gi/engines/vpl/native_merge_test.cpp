@@ -85,20 +85,13 @@ size_t unlike(std::vector<glm::vec4> a, std::vector<glm::vec4> b) {
     return different(a, b, 1e-5f, 0);
 }
 
-class NativeMerge : public OnDevice {
+class NativeMerge : public InBushRoom {
  protected:
     void SetUp() override {
-        OnDevice::SetUp();
-        if (!device->native_passes()) GTEST_SKIP() << "no native passes on this device";
-        auto loaded = load_cloud(*device, SurfelCloud(bush_room()));
-        ASSERT_TRUE(loaded);
-        loaded_ = std::move(*loaded);
+        InBushRoom::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
         materials_ = {scenes::material(), scenes::material(1.4f)};
         ASSERT_TRUE(upload_materials(*device, materials_, device_materials_));
-    }
-    void TearDown() override {
-        gi::native::use_instruction_set(-1);
-        OnDevice::TearDown();
     }
 
     /// Draws and joins a picture, the same for native passes and shaders.
@@ -185,7 +178,6 @@ class NativeMerge : public OnDevice {
             std::ranges::count_if(texels_, [](const GBufferTexel& texel) { return texel.depth > 0; }));
     }
 
-    std::unique_ptr<LoadedCloud> loaded_;
     std::vector<Material> materials_;
     Buffer device_materials_, radiance_;
     Shot shot_;

@@ -35,14 +35,11 @@ struct Shaded {
     std::vector<glm::vec4> light, own_light;
 };
 
-class NativeShading : public OnDevice {
+class NativeShading : public InBushRoom {
  protected:
     void SetUp() override {
-        OnDevice::SetUp();
-        if (!device->native_passes()) GTEST_SKIP() << "no native passes on this device";
-        auto loaded = load_cloud(*device, SurfelCloud(bush_room()));
-        ASSERT_TRUE(loaded);
-        loaded_ = std::move(*loaded);
+        InBushRoom::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
         camera_ = look({0.3f, -2, 0.4f}, {0, 3, 0}, 203, 151, 0.8f);
         camera_.right.w = 0.3f;
         ASSERT_TRUE(rasterize(*device, loaded_->cut, camera_, gbuffer_));
@@ -54,10 +51,6 @@ class NativeShading : public OnDevice {
         const auto layout = atlas_layout(512, static_cast<uint32_t>(seeds_.host_lights.size()));
         ASSERT_TRUE(layout);
         ASSERT_TRUE(draw_shadow_maps(*device, loaded_->cut, seeds_, *layout, false, times, maps_));
-    }
-    void TearDown() override {
-        gi::native::use_instruction_set(-1);
-        OnDevice::TearDown();
     }
 
     Shaded shade(int64_t interleave) {
@@ -85,7 +78,6 @@ class NativeShading : public OnDevice {
                 tiles.own_diffuse.download_all<glm::vec4>(pixels)};
     }
 
-    std::unique_ptr<LoadedCloud> loaded_;
     CameraView camera_;
     GBuffer gbuffer_;
     Seeds seeds_;

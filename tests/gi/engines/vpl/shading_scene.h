@@ -1,13 +1,19 @@
-// What the tests of native shading and merging share.
+// What the tests of native shading, merging and light of the sky share.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "gi/raster/native/native.h"
+#include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi::vpl {
 
@@ -27,6 +33,23 @@ inline std::vector<Surfel> bush_room() {
     }
     return surfels;
 }
+
+/// Native passes in that room; skipped on devices that have none.
+class InBushRoom : public OnDevice {
+ protected:
+    void SetUp() override {
+        OnDevice::SetUp();
+        if (!device->native_passes()) GTEST_SKIP() << "no native passes on this device";
+        auto loaded = load_cloud(*device, SurfelCloud(bush_room()));
+        ASSERT_TRUE(loaded);
+        loaded_ = std::move(*loaded);
+    }
+    void TearDown() override {
+        gi::native::use_instruction_set(-1);
+        OnDevice::TearDown();
+    }
+    std::unique_ptr<LoadedCloud> loaded_;
+};
 
 /// Returns how many pixels differ by more than a share of their light and a least distance.
 inline size_t different(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, float share,

@@ -190,21 +190,14 @@ TEST(SkyMaps, WordsOfFloatsKeepTheirOrder) {
 }
 
 /// The passes in C++ against the shaders.
-class NativeSkyLight : public OnDevice {
+class NativeSkyLight : public InBushRoom {
  protected:
     void SetUp() override {
-        OnDevice::SetUp();
-        if (!device->native_passes()) GTEST_SKIP() << "no native passes on this device";
-        auto loaded = load_cloud(*device, SurfelCloud(bush_room()));
-        ASSERT_TRUE(loaded);
-        loaded_ = std::move(*loaded);
+        InBushRoom::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
         camera_ = look({0.3f, -2, 0.4f}, {0, 3, 0}, 203, 151, 0.8f);
         ASSERT_TRUE(rasterize(*device, loaded_->cut, camera_, gbuffer_));
         ASSERT_TRUE(decode_casters(*device, loaded_->cut, casters_));
-    }
-    void TearDown() override {
-        gi::native::use_instruction_set(-1);
-        OnDevice::TearDown();
     }
 
     struct Shaded {
@@ -234,7 +227,6 @@ class NativeSkyLight : public OnDevice {
                 tiles.own_diffuse.download_all<glm::vec4>(pixels)};
     }
 
-    std::unique_ptr<LoadedCloud> loaded_;
     CameraView camera_;
     GBuffer gbuffer_;
     ShadowMaps casters_;
