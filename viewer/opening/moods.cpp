@@ -30,7 +30,7 @@ constexpr std::array kMoods = {
 };
 
 // Kelvin.
-constexpr double kBulb = 3600, kGallery = 4300, kLowSun = 3400, kNoonSun = 5800;
+constexpr double kBulb = 3600, kGallery = 4300, kNoonSun = 5800;
 
 constexpr double kLampRadius = .25;  ///< m
 constexpr double kDuskBegins = 12;   ///< degrees: below this elevation of the sun the backdrop turns to dusk
@@ -154,6 +154,13 @@ struct Light {
     bool daylight = false;          ///< the sky is that of the daylight model
 };
 
+/// Sun and sky of the daylight model. Shown as films for daylight show them: white at noon, warm in the
+/// evening.
+Light under_clear_sky(gi::SceneLight sun, const gi::Backdrop& backdrop) {
+    sun.daylight = true;
+    return {{std::move(sun)}, {}, backdrop, gi::kDaylight, true};
+}
+
 bool in_rooms(const Site& site) {
     return site.kind == SiteKind::interior && site.inside;
 }
@@ -165,15 +172,12 @@ Light daylight(const Site& site, const gi::SceneCamera& camera) {
         const glm::dvec3 ahead = site.inside->ahead;
         towards = site.inside->sunward.value_or(normalize(glm::dvec3(-ahead.y, ahead.x, .7) - .4 * ahead));
     }
-    gi::SceneLight sun = sun_from(site, towards);
-    sun.daylight = true;
-    return {{sun}, {}, kSky, gi::kDaylight, true};
+    return under_clear_sky(sun_from(site, towards), kSky);
 }
 
 Light evening(const Site& site, const gi::SceneCamera& camera) {
     if (in_rooms(site)) return {lamps_in(site, gi::LightKind::disc, kBulb), {}, kDark, kBulb};
-    const glm::dvec3 towards = site.kind == SiteKind::terrain ? north_west(9) : left_of_view(camera, 65, 9);
-    return {{sun_from(site, towards, white_of(kLowSun) * 220.0)}, {14, 18, 30}, kDusk, kLowSun};
+    return under_clear_sky(sun_from(site, left_of_view(camera, 65, 9)), kDusk);
 }
 
 Light raking(const Site& site, const gi::SceneCamera& camera) {

@@ -18,6 +18,8 @@ constexpr double kEyeHeight = 1.6;
 constexpr double kLeastHeight = 1.9;  ///< free height for a person to stand
 constexpr double kWideEnough = 2;     ///< distance to the nearest wall from which a place gets no better
 constexpr double kElbowRoom = 0.7;    ///< distance to what stands beside and behind the eye
+constexpr double kHeadRoom = 0.3;     ///< distance to what is above the eye
+constexpr double kSameFloor = 0.3;    ///< difference in height of places on one floor
 constexpr double kLampSpacing = 5;
 constexpr double kHighestLamp = 4;                  ///< above the floor
 constexpr double kLeastAway = .4, kMostAway = 1.5;  ///< of grazing light from its wall
@@ -125,9 +127,23 @@ glm::dvec3 step_back(const OccupancyGrid& grid, const glm::dvec3& eye, const glm
     for (double left = grid.look(eye, -ahead).distance - room; left > step; left -= step) {
         const glm::dvec3 next = at - ahead * step;
         if (grid.look(next, aside).distance < room || grid.look(next, -aside).distance < room) break;
+        if (grid.look(next, {0, 0, 1}).distance < kHeadRoom * metre) break;
         at = next;
     }
     return at;
+}
+
+/// Returns for each place the number of places on a floor of the same height.
+std::vector<size_t> sizes_of_floors(const std::vector<Place>& places, double metre) {
+    std::vector<double> floors;
+    for (const Place& place : places) floors.push_back(place.floor);
+    std::sort(floors.begin(), floors.end());
+    std::vector<size_t> sizes;
+    for (const Place& place : places)
+        sizes.push_back(static_cast<size_t>(
+            std::upper_bound(floors.begin(), floors.end(), place.floor + kSameFloor * metre) -
+            std::lower_bound(floors.begin(), floors.end(), place.floor - kSameFloor * metre)));
+    return sizes;
 }
 
 std::vector<glm::dvec3> places_of_lamps(const OccupancyGrid& grid, const StandingPlace& place, double metre) {
@@ -228,16 +244,20 @@ Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) 
         for (size_t i = first; i < last; ++i)
             if (enclosed(grid, places[i].eye)) scores[i] = roominess(grid, places[i].eye, metre);
     });
+    std::vector<Place> in_rooms;
+    std::vector<double> roominess_of;
+    for (size_t i = 0; i < places.size(); ++i)
+        if (scores[i]) in_rooms.push_back(places[i]), roominess_of.push_back(*scores[i]);
+    // From the top of a cupboard one sees more of a room, but people stand on floors, which are larger.
+    const std::vector<size_t> floor = sizes_of_floors(in_rooms, metre);
     double most = 0;
-    size_t in_rooms = 0;
     const Place* best = nullptr;
-    for (size_t i = 0; i < places.size(); ++i) {
-        if (!scores[i]) continue;
-        ++in_rooms;
-        if (*scores[i] > most) most = *scores[i], best = &places[i];
+    for (size_t i = 0; i < in_rooms.size(); ++i) {
+        const double score = roominess_of[i] * static_cast<double>(floor[i]);
+        if (score > most) most = score, best = &in_rooms[i];
     }
     if (!best) return found;
-    found.enclosed_share = static_cast<double>(in_rooms) / static_cast<double>(places.size());
+    found.enclosed_share = static_cast<double>(in_rooms.size()) / static_cast<double>(places.size());
     StandingPlace place;
     place.ahead = along_the_room(grid, best->eye);
     place.eye = step_back(grid, best->eye, place.ahead, metre);

@@ -91,6 +91,34 @@ TEST(Site, ARoomIsSeenFromWithinAlongItsLength) {
     }
 }
 
+/// A wide bench along half of the room, as high as a person's chest, under a cable tray.
+TEST(Site, OneStandsOnTheFloorNotOnFurniture) {
+    std::vector<dvec3> points;
+    const Box high = {kRoom[0], dvec3(105, 212, 13.6)}, bench = {kRoom[0], dvec3(102.5, 212, 11.3)};
+    add_faces(points, high, 60000, true, 1);
+    add_faces(points, bench, 30000, true, 2);
+    add_faces(points, {dvec3(100, 200, 13), dvec3(105, 203, 13.1)}, 9000, true, 3);
+    const auto hidden = [&](const dvec3& p) {  // inside the bench, or under it
+        return p.x < 102.4 && p.z < 11.2 && p.x > 100.1;
+    };
+    std::erase_if(points, hidden);
+    const Site site = survey_site(points, high, 1);
+    ASSERT_TRUE(site.inside);
+    EXPECT_NEAR(site.inside->eye.z - kRoom[0].z, 1.6, .3);
+}
+
+TEST(Site, TheEyeStaysBelowLowCeilings) {
+    std::vector<dvec3> points;
+    add_faces(points, kRoom, 60000, true, 1);
+    // At both ends of the room the ceiling is 1.85 m high.
+    for (const double y : {200., 209.})
+        add_faces(points, {dvec3(100, y, 11.85), dvec3(105, y + 3, 11.9)}, 20000, true, 3);
+    const Site site = survey_site(points, kRoom, 1);
+    ASSERT_TRUE(site.inside);
+    EXPECT_GT(site.inside->eye.y, 202.5);
+    EXPECT_LT(site.inside->eye.y, 209.5);
+}
+
 TEST(Site, ARoomWithoutCeilingIsSeenFromOutside) {
     std::vector<dvec3> points;
     add_faces(points, kRoom, 60000, false, 2);
@@ -390,6 +418,46 @@ TEST(Moods, TheHourMovesAndReddensTheSun) {
     EXPECT_GT(night, 0) << "some light is left";
     EXPECT_LT(night, .01f * dusk);
     EXPECT_EQ(at(13), noon) << "the way does not matter";
+}
+
+/// What a white surface in the open leaves, as it is shown: sun and sky over the scene's white.
+dvec3 shown(const gi::Scene& scene, const dvec3& normal) {
+    const gi::SceneLight& sun = scene.lights.at(0);
+    const double cosine = dot(normalize(sun.position - sun.target), normal);
+    dvec3 light = sun.strength * std::max(cosine, 0.0);
+    constexpr int kSteps = 40;
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; j < 4 * kSteps; ++j) {  // equal areas of the upper hemisphere
+            const double z = (i + .5) / kSteps, turn = 2 * std::numbers::pi * (j + .5) / (4 * kSteps);
+            const double r = std::sqrt(1 - z * z);
+            const dvec3 from(r * std::cos(turn), r * std::sin(turn), z);
+            light += dvec3(scene.environment->radiance(glm::vec3(from))) * std::max(dot(from, normal), 0.0) *
+                     (2 * std::numbers::pi / (4 * kSteps * kSteps));
+        }
+    return light / scene.white;
+}
+
+TEST(Moods, EveningIsWarmWhereTheSunShinesAndNotNightElsewhere) {
+    const std::vector<dvec3> ground = terrain(20000);
+    std::vector<dvec3> statue;
+    add_faces(statue, {dvec3(0), dvec3(.6, .6, 1.8)}, 20000, true, 9);
+    const Site sites[] = {survey_site(ground, {dvec3(0, 0, -20), dvec3(400, 400, 20)}, 1),
+                          survey_site(statue, {dvec3(0), dvec3(.6, .6, 1.8)}, 1)};
+    for (const Site& site : sites) {
+        const gi::SceneCamera camera = first_view(site, {});
+        gi::Scene scene = gi::default_scene(site.box[0], site.box[1]);
+        set_mood(scene, Mood::evening, site, camera);
+        const gi::SceneLight& sun = scene.lights.at(0);
+        const dvec3 towards = normalize(sun.position - sun.target);
+        EXPECT_LT(towards.z, .2);
+        const dvec3 back = camera.position - camera.target;
+        EXPECT_GT(dot(towards, normalize(dvec3(back.x, back.y, 0))), .3) << "the camera sees what is lit";
+        const dvec3 wall = shown(scene, normalize(dvec3(towards.x, towards.y, 0))),
+                    floor = shown(scene, {0, 0, 1});
+        EXPECT_GT(wall.x, 1.3 * wall.z);
+        EXPECT_LT(floor.z, 1.3 * floor.x);
+        EXPECT_GT(wall.y, 1.5 * floor.y) << "low light";
+    }
 }
 
 }  // namespace
