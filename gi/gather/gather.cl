@@ -19,10 +19,21 @@
 #define LARGEST fmin(4.0f / GRID, 0.2f)
 #define THICKEST (0.7f / GRID)
 #define LARGEST_THICK fmin(2.0f / GRID, 0.1f)
+#define MOST_SMALL 4  // pixels along a side of what is drawn together with its neighbours
 #define STACK 456  // seven a level; trees of 2^32 surfels have at most 64 levels (kMedianLevel)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
 #define MOST_SHIFT 4.0f  // in lifts, see seen_slot()
+
+// As fmin() where neither is NaN, in one instruction.
+#define LEAST(a, b) select(b, a, (a) < (b))
+
+// As any() for the result of a comparison, without a branch for each number.
+bool any_of(int8 met) {
+    ulong4 pairs = as_ulong4(met);
+    ulong2 two = pairs.lo | pairs.hi;
+    return (two.x | two.y) != 0;
+}
 
 // Numbers from 0 to 1 for a number and the seven that follow it.
 float8 fractions_of(uint first) {
@@ -35,9 +46,19 @@ float8 fractions_of(uint first) {
     return convert_float8(seeds >> 8) * 0x1p-24f;
 }
 
+// The first of these numbers.
+float fraction_of(uint seed) {
+    seed ^= seed >> 16;
+    seed *= 0x7feb352du;
+    seed ^= seed >> 15;
+    seed *= 0x846ca68bu;
+    seed ^= seed >> 16;
+    return convert_float(seed >> 8) * 0x1p-24f;
+}
+
 // Pushes those children for which `go` is set; returns the new height of the stack.
 int push(int8 go, int8 child, int* stack, int top) {
-    if (!any(go)) return top;
+    if (!any_of(go)) return top;
     int goes[8], children[8];
     vstore8(go, 0, goes);
     vstore8(child, 0, children);
@@ -78,12 +99,12 @@ uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, f
         int8 go = near & (child >= 0);
         top = push(go, child, stack, top);
         int8 leaf = near & (child == (int8)(kLeafChild));
-        if (!any(leaf)) continue;
+        if (!any_of(leaf)) continue;
         float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
         float8 distance = (dx * nx + dy * ny + dz * nz) / (direction.x * nx + direction.y * ny + direction.z * nz);
         float8 ox = direction.x * distance - dx, oy = direction.y * distance - dy, oz = direction.z * distance - dz;
         int8 met = leaf & (distance > 0.0f) & (ox * ox + oy * oy + oz * oz <= bound * bound);
-        if (!any(met)) continue;
+        if (!any_of(met)) continue;
         int meets[8];
         float distances[8];
         vstore8(met, 0, meets);
@@ -116,6 +137,26 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
     return start + viewer * distance + axis * (dot(axis, viewer) > 0.0f ? radius : -radius);
 }
 
+// Returns whether a point of the plane of a node's child, relative to its middle, is in a part of its box that its mask
+// has.
+bool hides(global const WideNode* node, int k, float x, float y, float z) {
+    uint low = node->mask_low[k], high = node->mask_high[k];
+    if ((low & high) == 0xffffffffu) return true;
+    float size_x = fabs(node->nx[k]), size_y = fabs(node->ny[k]), size_z = fabs(node->nz[k]);
+    float i = (x - node->low_x[k]) * (8.0f / (node->high_x[k] - node->low_x[k]));
+    float j = (y - node->low_y[k]) * (8.0f / (node->high_y[k] - node->low_y[k]));
+    float l = (z - node->low_z[k]) * (8.0f / (node->high_z[k] - node->low_z[k]));
+    if (size_x >= size_y && size_x >= size_z) {
+        i = j;
+        j = l;
+    } else if (size_y >= size_z) {
+        j = i;
+        i = l;
+    }
+    uint bit = convert_uint_sat(fmin(i, 7.0f)) + 8u * convert_uint_sat(fmin(j, 7.0f));
+    return (((bit >= 32u ? high : low) >> (bit & 31u)) & 1u) != 0u;
+}
+
 // Returns whether points of a node's plane, relative to its middle, are in parts of its box that its mask has.
 int8 hidden(uint mask_low, uint mask_high, float3 axis, float3 low, float3 high, float8 x, float8 y, float8 z) {
     float3 size = fabs(axis), scale = 8.0f / (high - low);
@@ -135,10 +176,122 @@ int8 hidden(uint mask_low, uint mask_high, float3 axis, float3 low, float3 high,
     return ((word >> (bit & 31u)) & 1u) != 0u;
 }
 
+// The directions of all pixels, zero where a pixel has no ray.
+typedef struct {
+    float rows[3 * PIXELS];  // all x, all y, all z
+    float4 each[PIXELS + MOST_SMALL * (ROW + 1)];  // what is drawn side by side may reach beyond the last
+} Rays;
+
+// Eight children of a node, as they appear from a place.
+typedef struct {
+    float8 dx, dy, dz;                 // middles, from the start of the rays
+    float8 nx, ny, nz, plane;          // their planes: n . p = plane
+    int8 cloud;
+    int8 left, right, upper, lower;    // the pixels that they may cover
+} Children;
+
+int largest_of(int8 v) {
+    int4 four = max(v.lo, v.hi);
+    int2 two = max(four.lo, four.hi);
+    return max(two.x, two.y);
+}
+
+// Draws one of eight children, which covers many pixels: eight of a row at a time.
+void draw_large(global const WideNode* node, Children* children, int k, uint slot, const float* rays, uint seed,
+                float* depths, uint* slots) {
+    float x = ((float*)&children->dx)[k], y = ((float*)&children->dy)[k], z = ((float*)&children->dz)[k];
+    float3 axis = (float3)(((float*)&children->nx)[k], ((float*)&children->ny)[k], ((float*)&children->nz)[k]);
+    float plane = ((float*)&children->plane)[k];
+    int first = ((int*)&children->left)[k], last = ((int*)&children->right)[k], end = ((int*)&children->lower)[k];
+    float radius2 = node->bound[k] * node->bound[k];
+    float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
+    float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
+    uint mask_low = node->mask_low[k], mask_high = node->mask_high[k];
+    bool whole = (mask_low & mask_high) == 0xffffffffu, scattered = high.x == kCloud;
+    float part = low.x;
+    if (scattered) low = (float3)(-NOTHING), high = (float3)(NOTHING);
+    for (int j = ((int*)&children->upper)[k]; j <= end; ++j)
+        for (int i = first; i <= last; i += 8) {
+            int pixel = j * ROW + i;
+            float8 rx = vload8(0, rays + pixel), ry = vload8(0, rays + PIXELS + pixel);
+            float8 rz = vload8(0, rays + 2 * PIXELS + pixel);
+            float8 t = plane / (rx * axis.x + ry * axis.y + rz * axis.z);
+            float8 ox = rx * t - x, oy = ry * t - y, oz = rz * t - z;
+            float8 depth = vload8(0, depths + pixel);
+            uint8 held = vload8(0, slots + pixel);
+            int8 met = (t > 0.0f) & ((t < depth) | ((t == depth) & (held > slot)));
+            met &= (ox >= low.x) & (ox <= high.x) & (oy >= low.y) & (oy <= high.y);
+            met &= (oz >= low.z) & (oz <= high.z) & (ox * ox + oy * oy + oz * oz <= radius2);
+            if (scattered)
+                met &= fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel) < part;
+            else if (!whole)
+                met &= hidden(mask_low, mask_high, axis, low, high, ox, oy, oz);
+            vstore8(select(depth, t, met), 0, depths + pixel);
+            vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
+        }
+}
+
+// Draws those of eight children that cover few pixels: one pixel of each at a time. Most rays pass beside them, so what
+// is left to do for those that do not is done for each by itself.
+void draw_small(global const WideNode* node, Children* children, int8 small, uint first_slot, const float4* rays,
+                uint seed, float* depths, uint* slots) {
+    float8 dx = children->dx, dy = children->dy, dz = children->dz;
+    float8 nx = children->nx, ny = children->ny, nz = children->nz, plane = children->plane;
+    float8 radius = vload8(0, node->bound), radius2 = radius * radius;
+    float8 low_x = select(vload8(0, node->low_x), (float8)(-NOTHING), children->cloud);
+    float8 low_y = select(vload8(0, node->low_y), (float8)(-NOTHING), children->cloud);
+    float8 low_z = select(vload8(0, node->low_z), (float8)(-NOTHING), children->cloud);
+    float8 high_x = select(vload8(0, node->high_x), (float8)(NOTHING), children->cloud);
+    float8 high_y = select(vload8(0, node->high_y), (float8)(NOTHING), children->cloud);
+    float8 high_z = select(vload8(0, node->high_z), (float8)(NOTHING), children->cloud);
+    int8 width = select((int8)(0), children->right - children->left + 1, small);
+    int8 height = select((int8)(0), children->lower - children->upper + 1, small);
+    int most_wide = largest_of(width), most_tall = largest_of(height);
+    int corners[8];
+    vstore8(select((int8)(0), children->upper * ROW + children->left, small), 0, corners);
+    for (int j = 0; j < most_tall; ++j)
+        for (int i = 0; i < most_wide; ++i) {
+            const float4* pixel = rays + (j * ROW + i);
+            float4 r0 = pixel[corners[0]], r1 = pixel[corners[1]], r2 = pixel[corners[2]], r3 = pixel[corners[3]];
+            float4 r4 = pixel[corners[4]], r5 = pixel[corners[5]], r6 = pixel[corners[6]], r7 = pixel[corners[7]];
+            float8 rx = (float8)(r0.x, r1.x, r2.x, r3.x, r4.x, r5.x, r6.x, r7.x);
+            float8 ry = (float8)(r0.y, r1.y, r2.y, r3.y, r4.y, r5.y, r6.y, r7.y);
+            float8 rz = (float8)(r0.z, r1.z, r2.z, r3.z, r4.z, r5.z, r6.z, r7.z);
+            float8 t = plane / (rx * nx + ry * ny + rz * nz);
+            float8 ox = rx * t - dx, oy = ry * t - dy, oz = rz * t - dz;
+            // Few comparisons: each costs more than arithmetic.
+            float8 room = LEAST(LEAST(ox - low_x, high_x - ox), LEAST(oy - low_y, high_y - oy));
+            room = LEAST(room, LEAST(oz - low_z, high_z - oz));
+            float8 most = select((float8)(-1.0f), radius2, (width > i) & (height > j));
+            int8 met = (ox * ox + oy * oy + oz * oz <= most) & (room >= 0.0f) & (t > 0.0f);
+            if (!any_of(met)) continue;
+            int meets[8];
+            float ts[8], xs[8], ys[8], zs[8];
+            vstore8(met, 0, meets);
+            vstore8(t, 0, ts);
+            vstore8(ox, 0, xs);
+            vstore8(oy, 0, ys);
+            vstore8(oz, 0, zs);
+            for (int k = 0; k < 8; ++k) {
+                if (!meets[k]) continue;
+                int at = corners[k] + j * ROW + i;
+                uint slot = first_slot + (uint)k;
+                if (ts[k] > depths[at] || (ts[k] == depths[at] && slots[at] < slot)) continue;
+                if (node->high_x[k] == kCloud) {
+                    if (fraction_of(slot * 0x9e3779b9u + seed + (uint)at) >= node->low_x[k]) continue;
+                } else if (!hides(node, k, xs[k], ys[k], zs[k])) {
+                    continue;
+                }
+                depths[at] = ts[k];
+                slots[at] = slot;
+            }
+        }
+}
+
 // Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
 // and its slot. `side` and `across` are the axes of the picture, which reaches to `scale` along them; `rays` are the
 // directions of its pixels, zero where a pixel has no ray.
-void draw(global const WideNode* nodes, const float* rays, float3 start, float3 side, float3 across, float3 axis,
+void draw(global const WideNode* nodes, const Rays* rays, float3 start, float3 side, float3 across, float3 axis,
           float3 normal, float scale, uint seed, float* depths, uint* slots) {
     float pixels = 0.5f * GRID / scale;
     int stack[STACK];
@@ -169,11 +322,8 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
         int8 go = above & large, drawn = above & ~large;
         top = push(go, child, stack, top);
-        if (!any(drawn)) continue;
+        if (!any_of(drawn)) continue;
         float8 nearer = rsqrt(distance2);
-        nx = select(nx, dx * nearer, cloud);
-        ny = select(ny, dy * nearer, cloud);
-        nz = select(nz, dz * nearer, cloud);
         // The picture of the cone about a sphere: its directions are c u + s v with unit vectors v across u.
         float8 s = fmin(bound * nearer, 1.0f), c = sqrt(1.0f - s * s) * (0.5f * GRID / scale);
         float8 ux = (dx * side.x + dy * side.y + dz * side.z) * nearer;
@@ -184,52 +334,29 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         // Cones about the end of an axis reach to its end.
         wide = select(wide, (float8)(2.0f * GRID), (s >= 1.0f) | (ux * ux + s * s > 1.0f));
         tall = select(tall, (float8)(2.0f * GRID), (s >= 1.0f) | (uy * uy + s * s > 1.0f));
-        float left[8], right[8], upper[8], lower[8], x[8], y[8], z[8], axis_x[8], axis_y[8], axis_z[8], planes[8];
+        Children children;
+        children.dx = dx;
+        children.dy = dy;
+        children.dz = dz;
+        children.nx = select(nx, dx * nearer, cloud);
+        children.ny = select(ny, dy * nearer, cloud);
+        children.nz = select(nz, dz * nearer, cloud);
+        children.plane = select(plane, distance2 * nearer, cloud);
+        children.cloud = cloud;
+        children.left = convert_int8(fmax(ceil(px - wide), 0.0f));
+        children.right = convert_int8(fmin(floor(px + wide), GRID - 1.0f));
+        children.upper = convert_int8(fmax(ceil(py - tall), 0.0f));
+        children.lower = convert_int8(fmin(floor(py + tall), GRID - 1.0f));
+        int8 columns = children.right - children.left + 1, rows = children.lower - children.upper + 1;
+        drawn &= (columns > 0) & (rows > 0);
+        int8 small = drawn & (columns <= MOST_SMALL) & (rows <= MOST_SMALL);
+        if (any_of(small)) draw_small(node, &children, small, (uint)at * 8, rays->each, seed, depths, slots);
+        int8 others = drawn & ~small;
+        if (!any_of(others)) continue;
         int draws[8];
-        vstore8(fmax(ceil(px - wide), 0.0f), 0, left);
-        vstore8(fmin(floor(px + wide), GRID - 1.0f), 0, right);
-        vstore8(fmax(ceil(py - tall), 0.0f), 0, upper);
-        vstore8(fmin(floor(py + tall), GRID - 1.0f), 0, lower);
-        vstore8(dx, 0, x);
-        vstore8(dy, 0, y);
-        vstore8(dz, 0, z);
-        vstore8(nx, 0, axis_x);
-        vstore8(ny, 0, axis_y);
-        vstore8(nz, 0, axis_z);
-        vstore8(select(plane, distance2 * nearer, cloud), 0, planes);
-        vstore8(drawn, 0, draws);
-        for (int k = 0; k < 8; ++k) {
-            if (!draws[k]) continue;
-            uint slot = (uint)(at * 8 + k);
-            int first = (int)left[k], last = (int)right[k], end = (int)lower[k];
-            float radius2 = node->bound[k] * node->bound[k];
-            float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
-            float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
-            uint mask_low = node->mask_low[k], mask_high = node->mask_high[k];
-            bool whole = (mask_low & mask_high) == 0xffffffffu, scattered = high.x == kCloud;
-            float part = low.x;
-            if (scattered) low = (float3)(-NOTHING), high = (float3)(NOTHING);
-            float3 normal_k = (float3)(axis_x[k], axis_y[k], axis_z[k]);
-            for (int j = (int)upper[k]; j <= end; ++j)
-                for (int i = first; i <= last; i += 8) {
-                    int pixel = j * ROW + i;
-                    float8 rx = vload8(0, rays + pixel), ry = vload8(0, rays + PIXELS + pixel);
-                    float8 rz = vload8(0, rays + 2 * PIXELS + pixel);
-                    float8 t = planes[k] / (rx * axis_x[k] + ry * axis_y[k] + rz * axis_z[k]);
-                    float8 ox = rx * t - x[k], oy = ry * t - y[k], oz = rz * t - z[k];
-                    float8 depth = vload8(0, depths + pixel);
-                    uint8 held = vload8(0, slots + pixel);
-                    int8 met = (t > 0.0f) & ((t < depth) | ((t == depth) & (held > slot)));
-                    met &= (ox >= low.x) & (ox <= high.x) & (oy >= low.y) & (oy <= high.y);
-                    met &= (oz >= low.z) & (oz <= high.z) & (ox * ox + oy * oy + oz * oz <= radius2);
-                    if (scattered)
-                        met &= fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel) < part;
-                    else if (!whole)
-                        met &= hidden(mask_low, mask_high, normal_k, low, high, ox, oy, oz);
-                    vstore8(select(depth, t, met), 0, depths + pixel);
-                    vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
-                }
-        }
+        vstore8(others, 0, draws);
+        for (int k = 0; k < 8; ++k)
+            if (draws[k]) draw_large(node, &children, k, (uint)(at * 8 + k), rays->rows, seed, depths, slots);
     }
 }
 
@@ -288,7 +415,7 @@ float3 ray_of(Place place, int pixel) {
 }
 
 // Sets the directions of all pixels, zero where there is none above the surface, and an empty picture.
-void clear(Place place, float* directions, float* depths, uint* slots) {
+void clear(Place place, Rays* directions, float* depths, uint* slots) {
     for (int i = 0; i < PIXELS; i += 8) {
         float8 x = vload8(0, place.set + i), y = vload8(0, place.set + PIXELS + i);
         int8 none = x > 1.0f;
@@ -299,16 +426,22 @@ void clear(Place place, float* directions, float* depths, uint* slots) {
         float8 dy = place.side.y * x + place.across.y * y + place.axis.y * z;
         float8 dz = place.side.z * x + place.across.z * y + place.axis.z * z;
         none |= dx * place.normal.x + dy * place.normal.y + dz * place.normal.z <= 0.0f;
-        vstore8(select(dx, (float8)(0.0f), none), 0, directions + i);
-        vstore8(select(dy, (float8)(0.0f), none), 0, directions + PIXELS + i);
-        vstore8(select(dz, (float8)(0.0f), none), 0, directions + 2 * PIXELS + i);
+        dx = select(dx, (float8)(0.0f), none);
+        dy = select(dy, (float8)(0.0f), none);
+        dz = select(dz, (float8)(0.0f), none);
+        vstore8(dx, 0, directions->rows + i);
+        vstore8(dy, 0, directions->rows + PIXELS + i);
+        vstore8(dz, 0, directions->rows + 2 * PIXELS + i);
+        for (int k = 0; k < 8; ++k)
+            directions->each[i + k] = (float4)(((float*)&dx)[k], ((float*)&dy)[k], ((float*)&dz)[k], 0.0f);
         vstore8((float8)(NOTHING), 0, depths + i);
         vstore8((uint8)(EMPTY), 0, slots + i);
     }
+    for (int i = 0; i < MOST_SMALL * (ROW + 1); ++i) directions->each[PIXELS + i] = (float4)(0.0f);
 }
 
 // Draws what is above a place.
-void draw_place(global const WideNode* nodes, Place place, uint seed, float* directions, float* depths, uint* slots) {
+void draw_place(global const WideNode* nodes, Place place, uint seed, Rays* directions, float* depths, uint* slots) {
     clear(place, directions, depths, slots);
     draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, seed, depths,
          slots);
@@ -350,9 +483,10 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
     if (number >= count) return;
     GatherPoint point = points[number];
     Place place = place_of(nodes, point, rays, sets);
-    float depths[PIXELS], directions[3 * PIXELS];
+    Rays directions;
+    float depths[PIXELS];
     uint slots[PIXELS];
-    draw_place(nodes, place, point.seed, directions, depths, slots);
+    draw_place(nodes, place, point.seed, &directions, depths, slots);
 
     float3 sum = (float3)(0.0f);
     uint cast = 0, empty = 0;
@@ -361,7 +495,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
             int pixel = j * ROW + i;
             if (place.set[pixel] > 1.0f) continue;
             ++cast;
-            float3 direction = (float3)(directions[pixel], directions[PIXELS + pixel], directions[2 * PIXELS + pixel]);
+            float3 direction = directions.each[pixel].xyz;
             float height = dot(direction, place.normal);
             if (!(height > 0.0f)) continue;
             float3 ray = ray_of(place, pixel);
@@ -387,9 +521,10 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
     number += first;
     GatherPoint point = points[number];
     Place place = place_of(nodes, point, rays, sets);
-    float depths[PIXELS], directions[3 * PIXELS];
+    Rays directions;
+    float depths[PIXELS];
     uint slots[PIXELS];
-    draw_place(nodes, place, point.seed, directions, depths, slots);
+    draw_place(nodes, place, point.seed, &directions, depths, slots);
 
     global uint* sees = seen + number * (uint)(GRID * GRID);
     float near = 0.0f;
@@ -397,7 +532,7 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
     for (int j = 0; j < GRID; ++j)
         for (int i = 0; i < GRID; ++i) {
             int pixel = j * ROW + i;
-            float3 direction = (float3)(directions[pixel], directions[PIXELS + pixel], directions[2 * PIXELS + pixel]);
+            float3 direction = directions.each[pixel].xyz;
             uint code = kSeesNothing;
             if (place.set[pixel] <= 1.0f && dot(direction, place.normal) > 0.0f) {
                 ++cast;
