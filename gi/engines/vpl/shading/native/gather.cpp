@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
-#include "gi/engines/vpl/shading/native/window.h"
 #include "gi/engines/vpl/shading/separation.h"
 #include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/engines/vpl/shadow_maps/splats.h"
@@ -19,7 +17,7 @@
 #define HWY_TARGET_INCLUDE "gi/engines/vpl/shading/native/gather.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
-#include "gi/engines/vpl/shading/native/surfaces-inl.h"
+#include "gi/engines/vpl/shading/native/interleaved-inl.h"
 #include "gi/engines/vpl/shadow_maps/native/texel-inl.h"
 
 #ifndef LUCARNE_NATIVE_GATHER_ONCE
@@ -37,9 +35,7 @@ struct GatherLight {
 
 struct GatherJob {
     const GatherInput& input;
-    int n;
     std::span<const GatherLight> lights;
-    const GatherOutput& output;
     float texels, texel, width;  ///< of a map: along a side; a texel's side; its angle
 };
 
@@ -202,136 +198,23 @@ HWY_INLINE void add_vpl(const GatherJob& job, const GatherLight& light, const Re
            add(sum.z, mul(set(light.diffuse.z), factor))};
 }
 
-/// Shades pixels, some vectors at a time: those of one tile read the same map, which then stays in the cache.
-class Batch {
- public:
-    /// `surfaces` holds the rows of the picture from `first_row` on.
-    Batch(const GatherJob& job, const Surfaces& surfaces, int first_row, glm::vec4* target)
-        : job_(job), surfaces_(surfaces), first_row_(first_row), target_(target) {}
+/// The VPLs as Batch takes them.
+struct VplLights {
+    static constexpr size_t kTogether = 16;
+    using Receivers = native::HWY_NAMESPACE::Receivers;
+    const GatherJob& job;
 
-    /// Adds the pixels at columns and rows of the picture. Each lane gets the light of the tiles in its mask,
-    /// 0 for none.
-    void add(hn::Vec<Ints> columns, hn::Vec<Ints> rows, U tiles) {
-        const Ints di;
-        const auto int_of = [&](size_t v) { return hn::Set(di, static_cast<int32_t>(v)); };
-        const auto place = hn::Add(hn::Mul(hn::Sub(rows, hn::Set(di, first_row_)), int_of(surfaces_.stride)),
-                                   hn::Add(columns, int_of(kBorder)));
-        const auto plane = [&](const std::vector<float>& values) {
-            return hn::GatherIndex(Floats(), values.data(), place);
-        };
-        const Mask shown = hn::Gt(plane(surfaces_.depth), hn::Zero(Floats()));
-        tiles = hn::IfThenElseZero(hn::RebindMask(Words(), shown), tiles);
-        if (hn::AllTrue(Words(), hn::Eq(tiles, hn::Zero(Words())))) return;
-        const F radius = plane(surfaces_.radius), zero = hn::Zero(Floats());
-        to_[count_] = {{plane(surfaces_.x), plane(surfaces_.y), plane(surfaces_.z)},
-                       {plane(surfaces_.nx), plane(surfaces_.ny), plane(surfaces_.nz)},
-                       radius,
-                       hn::Div(set(1.0f), radius)};
-        tiles_[count_] = tiles;
-        pixels_[count_] = hn::Add(hn::Mul(rows, int_of(job_.input.camera.width)), columns);
-        sum_[count_] = {zero, zero, zero};
-        if (++count_ == kMost) shade();
+    size_t count() const { return job.lights.size(); }
+    Receivers receivers(const V3& position, const V3& normal, F radius) const {
+        return {position, normal, radius, hn::Div(set(1.0f), radius)};
     }
-    /// Shades the pixels that were added last; call once at the end.
-    void shade() {
-        for (int tile = 0; tile < job_.n * job_.n; ++tile) gather_tile(tile);
-        for (size_t i = 0; i < count_; ++i) add_light(i);
-        count_ = 0;
+    HWY_INLINE void add(size_t number, const Receivers& to, Mask lanes, V3& sum) const {
+        add_vpl(job, job.lights[number], to, lanes, sum);
     }
-
- private:
-    static constexpr size_t kMost = 16;
-
-    void gather_tile(int tile) {
-        Mask lanes[kMost];
-        size_t which[kMost], used = 0;
-        for (size_t i = 0; i < count_; ++i) {
-            lanes[used] = hn::RebindMask(Floats(), hn::TestBit(tiles_[i], word(1u << tile)));
-            which[used] = i;
-            used += !hn::AllFalse(Floats(), lanes[used]);
-        }
-        if (!used) return;
-        const auto step = static_cast<size_t>(job_.n * job_.n);
-        for (auto light = static_cast<size_t>(tile); light < job_.lights.size(); light += step)
-            for (size_t i = 0; i < used; ++i)
-                add_vpl(job_, job_.lights[light], to_[which[i]], lanes[i], sum_[which[i]]);
-    }
-    void add_light(size_t i) {
-        // Each tile alone estimates the whole light.
-        const F tiles = set(static_cast<float>(job_.n * job_.n));
-        alignas(64) float lanes[3][kLanes];
-        alignas(64) int32_t pixels[kLanes];
-        alignas(64) uint32_t masks[kLanes];
-        hn::Store(mul(sum_[i].x, tiles), Floats(), lanes[0]);
-        hn::Store(mul(sum_[i].y, tiles), Floats(), lanes[1]);
-        hn::Store(mul(sum_[i].z, tiles), Floats(), lanes[2]);
-        hn::Store(pixels_[i], Ints(), pixels);
-        hn::Store(tiles_[i], Words(), masks);
-        for (size_t lane = 0; lane < hn::Lanes(Floats()); ++lane)
-            if (masks[lane])
-                target_[pixels[lane]] += glm::vec4(lanes[0][lane], lanes[1][lane], lanes[2][lane], 0);
-    }
-
-    const GatherJob& job_;
-    const Surfaces& surfaces_;
-    int first_row_;
-    glm::vec4* target_;
-    size_t count_ = 0;
-    Receivers to_[kMost];
-    U tiles_[kMost];
-    hn::Vec<Ints> pixels_[kMost];
-    V3 sum_[kMost];
 };
 
-/// Shades the pixels of some rows with the VPLs of their tiles, tile after tile.
-void gather_pixels(const GatherJob& job, int first, int end, Batch& batch) {
-    const Ints di;
-    const auto width = static_cast<int>(job.input.camera.width);
-    const auto columns = hn::Mul(hn::Iota(di, 0), hn::Set(di, job.n));
-    const auto last = hn::Set(di, width - 1);
-    // Down before across: pixels close to each other read few texels of a map.
-    for (int tile = 0; tile < job.n * job.n; ++tile)
-        for (int x = tile % job.n; x < width; x += job.n * static_cast<int>(hn::Lanes(Floats())))
-            for (int y = first; y < end; ++y) {
-                if (y % job.n != tile / job.n) continue;
-                const auto column = hn::Add(columns, hn::Set(di, x));
-                const auto inside = hn::RebindMask(Words(), hn::Lt(column, hn::Set(di, width)));
-                batch.add(hn::Min(column, last), hn::Set(di, y),
-                          hn::IfThenElseZero(inside, word(1u << tile)));
-            }
-}
-
-/// Shades the isolated pixels of some rows with the VPLs of the tiles that they lack.
-void gather_isolated(const GatherJob& job, int first, int end, Batch& batch) {
-    const uint32_t width = job.input.camera.width;
-    const auto begin = std::ranges::lower_bound(job.output.isolated, static_cast<uint32_t>(first) * width),
-               stop = std::ranges::lower_bound(job.output.isolated, static_cast<uint32_t>(end) * width);
-    const auto lanes = static_cast<ptrdiff_t>(hn::Lanes(Floats()));
-    for (auto at = begin; at < stop; at += std::min(lanes, stop - at)) {
-        alignas(64) int32_t columns[kLanes] = {}, rows[kLanes];
-        alignas(64) uint32_t lacking[kLanes] = {};
-        std::ranges::fill(rows, first);
-        for (ptrdiff_t lane = 0; lane < std::min(lanes, stop - at); ++lane) {
-            columns[lane] = static_cast<int32_t>(at[lane] % width);
-            rows[lane] = static_cast<int32_t>(at[lane] / width);
-            lacking[lane] =
-                lacking_tiles(job.output.joints + 2 * size_t{at[lane]}, job.n, columns[lane], rows[lane]);
-        }
-        batch.add(hn::Load(Ints(), columns), hn::Load(Ints(), rows), hn::Load(Words(), lacking));
-    }
-}
-
-void GatherRows(const GatherJob& job, int first, int end) {
-    Surfaces surfaces(job.input.camera.width, static_cast<size_t>(end - first));
-    for (int y = first; y < end; ++y)
-        read_row(job.input.camera, job.input.texels, y, static_cast<size_t>(y - first), surfaces);
-    Batch pixels(job, surfaces, first, job.output.irradiance);
-    gather_pixels(job, first, end, pixels);
-    pixels.shade();
-    if (job.n == 1) return;
-    Batch isolated(job, surfaces, first, job.output.own_irradiance);
-    gather_isolated(job, first, end, isolated);
-    isolated.shade();
+void GatherRows(const InterleavedPicture& picture, const GatherJob& job, int first, int end) {
+    light_rows(picture, VplLights{job}, first, end);
 }
 
 }  // namespace lucarne::gi::vpl::native::HWY_NAMESPACE
@@ -346,10 +229,10 @@ void gather(const GatherInput& input, uint32_t n, const GatherOutput& output) {
     for (const VplLight& light : input.lights)
         lights.push_back(gather_light(light, input.camera.origin, lights.size() * input.side * input.side));
     const auto texels = static_cast<float>(input.side);
-    const GatherJob job{input,      static_cast<int>(n),    lights, output, texels,
-                        2 / texels, map_texel_angle(texels)};
+    const GatherJob job{input, lights, texels, 2 / texels, map_texel_angle(texels)};
+    const InterleavedPicture picture{input.camera, input.texels, static_cast<int>(n), output};
     parallel_ranges(input.camera.height, 32, [&](size_t first, size_t end) {
-        HWY_DYNAMIC_DISPATCH(GatherRows)(job, static_cast<int>(first), static_cast<int>(end));
+        HWY_DYNAMIC_DISPATCH(GatherRows)(picture, job, static_cast<int>(first), static_cast<int>(end));
     });
 }
 

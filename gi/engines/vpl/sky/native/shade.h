@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "gi/engines/vpl/shading/native/gather.h"
+#include "gi/engines/vpl/shading/native/interleaved.h"
 #include "gi/engines/vpl/shading/sky_map.h"
 
 namespace lucarne::gi::vpl::native {
