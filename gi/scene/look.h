@@ -33,8 +33,9 @@ std::span<const std::string_view> colour_names();
 /// Returns whether a range of values is mapped to a colour map. The other kinds have colours of their own.
 bool has_range(ColourBy by);
 
-/// How the engine `unlit` shades.
-enum class Shading : uint8_t { flat, eye_dome, occlusion };
+/// How the engine `unlit` shades. `relief` is occlusion and a soft light beside the eye, for scans whose
+/// colours show no shape.
+enum class Shading : uint8_t { flat, eye_dome, occlusion, relief };
 std::span<const std::string_view> shading_names();
 
 struct Unlit {

@@ -133,7 +133,7 @@ std::span<const std::string_view> colour_names() {
 }
 
 std::span<const std::string_view> shading_names() {
-    static constexpr std::array<std::string_view, 3> kNames = {"flat", "eye-dome", "occlusion"};
+    static constexpr std::array<std::string_view, 4> kNames = {"flat", "eye-dome", "occlusion", "relief"};
     return kNames;
 }
 

@@ -15,6 +15,8 @@ class ColourCast {
     /// (io::color_white()). Values outside 0 to `white` do not count.
     void add(const io::Schema& schema, const std::byte* record, double white);
 
+    /// Whether a point has a colour other than black.
+    bool coloured() const { return sum_ != glm::dvec3(0.0); }
     /// Returns a linear colour of luminance 1, the components at most 4 times apart; white if no point has a
     /// colour.
     glm::dvec3 result() const;

@@ -11,7 +11,11 @@ namespace lucarne::viewer {
 gi::SceneCamera outside_view(const Site& site, const PictureShape& shape);
 /// Returns the camera at the standing place, which looks along the room. Requires site.inside.
 gi::SceneCamera inside_view(const Site& site, const PictureShape& shape);
-/// Returns the view that a scan opens with: of interiors from inside, of others from outside.
+/// Returns the camera that sees a site as the scanner did, where nothing is hidden from it: before it, if all
+/// lies on one side of the scanner; else from the scanner to the side where most is. Requires site.station.
+gi::SceneCamera station_view(const Site& site, const PictureShape& shape);
+/// Returns the view that a scan opens with: of interiors from inside, of what was scanned from one place from
+/// there, of others from outside.
 gi::SceneCamera first_view(const Site& site, const PictureShape& shape);
 
 /// Returns whether a camera looks at rooms from outside. Points that face away should not be drawn then

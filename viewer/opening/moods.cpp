@@ -265,7 +265,7 @@ void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCame
         scene.look.colour = gi::ColourBy::colour;
     switch (mood) {
         case Mood::scan_colours:  // lights stay for the engines that use them
-            scene.look.unlit.shading = gi::Shading::occlusion;
+            scene.look.unlit.shading = site.coloured ? gi::Shading::occlusion : gi::Shading::relief;
             scene.look.backdrop = kSoftGrey;
             return;
         case Mood::daylight:

@@ -27,6 +27,9 @@ constexpr int kThin = 3;  ///< cells
 /// rooms. People do not pass through such gaps.
 constexpr double kWidestGap = .5;
 constexpr double kCoarser = 1.5;
+/// Share of a site that a station sees at least. Cells hide what a scanner saw at a flat angle.
+constexpr double kSeen = .65, kOwnCells = 3;
+constexpr size_t kMostLooks = 500;
 
 struct CoarsePoints {
     std::vector<glm::dvec3> positions;  ///< world units
@@ -89,6 +92,39 @@ std::vector<glm::dvec3> outline_of(const OccupancyGrid& grid, const std::array<g
     return some;
 }
 
+/// Whether most of some places can be seen from a station. Files may state one for points of many.
+bool sees(const OccupancyGrid& grid, const glm::dvec3& station, std::span<const glm::dvec3> places) {
+    if (!std::isfinite(glm::length(station))) return false;
+    const size_t looks = std::min(places.size(), kMostLooks);
+    size_t seen = 0;
+    for (size_t i = 0; i < looks; ++i) {
+        const glm::dvec3& place = places[i * places.size() / looks];
+        const double distance = glm::distance(place, station);
+        // From the place, because the station may be outside the grid, and past the cells of its own surface.
+        const double first = kOwnCells * grid.cell();
+        if (distance <= first) {
+            ++seen;
+            continue;
+        }
+        const glm::dvec3 toward = (station - place) / distance;
+        const OccupancyGrid::Sight sight = grid.look(place + first * toward, toward);
+        seen += !sight.blocked || first + sight.distance >= distance;
+    }
+    return static_cast<double>(seen) >= kSeen * static_cast<double>(looks);
+}
+
+/// Returns where the scanner stood, if the source is one scan from one place.
+std::optional<glm::dvec3> only_station(const octree::NodeSource& source) {
+    const octree::SourceHeader& header = source.header();
+    if (source.parts() != 1 || header.scans.size() != 1) return std::nullopt;
+    const auto& stated = header.scans.front().stations;
+    const auto& estimated = header.estimated_stations;
+    if (stated.size() == 1) return stated.front().position;
+    if (stated.empty() && estimated.size() == 1 && estimated.front().saw_all)
+        return estimated.front().position;
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::string_view site_name(SiteKind kind) {
@@ -97,7 +133,7 @@ std::string_view site_name(SiteKind kind) {
 }
 
 Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
-                 double metres_per_unit, bool has_gaps) {
+                 double metres_per_unit, bool has_gaps, const std::optional<glm::dvec3>& station) {
     Site site;
     site.box = box;
     if (!std::isfinite(glm::length(box[0]) + glm::length(box[1])))
@@ -122,6 +158,8 @@ Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3
         site.kind = SiteKind::interior;
     else if (is_terrain(grid, site.box))
         site.kind = SiteKind::terrain;
+    const bool from_inside = site.kind == SiteKind::interior && site.inside;
+    if (station && !from_inside && sees(grid, *station, site.outline)) site.station = station;
     return site;
 }
 
@@ -129,8 +167,10 @@ Site survey_site(const octree::NodeSource& source) {
     const CoarsePoints found = coarse_points(source);
     const auto& points = found.positions;
     const bool has_gaps = source.header().has_gaps;
-    Site site = survey_site(points, octree::robust_bounds(source), source.header().metres_per_unit, has_gaps);
+    Site site = survey_site(points, octree::robust_bounds(source), source.header().metres_per_unit, has_gaps,
+                            only_station(source));
     site.cast = found.cast.result();
+    site.coloured = found.cast.coloured();
     // A source of many nodes is no sketch, even if the coarsest ones have few points.
     site.sure = !has_gaps && (points.size() >= kEnoughPoints || source.nodes().size() > kMostNodes);
     return site;
@@ -144,7 +184,8 @@ bool alike(const Site& a, const Site& b) {
         return std::abs(site.enclosed_share - kInterior) <= kUncertain;
     };
     const bool same_kind = a.kind == b.kind || (between(a) && between(b));
-    return same_kind && a.inside.has_value() == b.inside.has_value() && moved <= kSame * size;
+    return same_kind && a.inside.has_value() == b.inside.has_value() &&
+           a.station.has_value() == b.station.has_value() && moved <= kSame * size;
 }
 
 }  // namespace lucarne::viewer

@@ -46,9 +46,13 @@ struct Site {
     std::array<glm::dvec3, 2> box{};  ///< robust bounds
     double metres_per_unit = 1;
     glm::dvec3 cast{1.0};  ///< colour of the light in which the scan was photographed, linear, luminance 1
+    bool coloured = true;  ///< points have colours other than black
     bool sure = true;      ///< false: seen in few points, more of which may show something else
     std::vector<glm::dvec3> outline;      ///< points that a view of all has to contain; at least one
     std::optional<StandingPlace> inside;  ///< if there is a room
+    /// Where the scanner stood, if all was scanned from one place, which sees it. Not set if the site is seen
+    /// first from inside.
+    std::optional<glm::dvec3> station;
 };
 
 /// Looks at a sample of the coarsest nodes (up to 64 of them are loaded, so it may block). Nodes that cannot
@@ -59,12 +63,14 @@ Site survey_site(const octree::NodeSource& source);
 inline constexpr size_t kEnoughPoints = 100'000;
 
 /// The same for points that are known already, in a box (world units). `has_gaps`: as of SourceHeader.
+/// `station`: the place from which all is said to be scanned.
 Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
-                 double metres_per_unit, bool has_gaps = false);
+                 double metres_per_unit, bool has_gaps = false,
+                 const std::optional<glm::dvec3>& station = std::nullopt);
 
-/// Returns whether two sites are of one kind, or between two kinds, and their boxes differ by less than a
-/// twentieth, as those of a sample and of more points of the same scan do: views and light made for one suit
-/// the other.
+/// Returns whether two sites are of one kind, or between two kinds, both or neither of them scanned from one
+/// place, and their boxes differ by less than a twentieth, as those of a sample and of more points of the
+/// same scan do: views and light made for one suit the other.
 bool alike(const Site& a, const Site& b);
 
 }  // namespace lucarne::viewer

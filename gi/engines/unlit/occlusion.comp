@@ -6,7 +6,8 @@ layout(local_size_x = 16, local_size_y = 4) in;
 #include "gi/engines/unlit/texels.glsl"
 
 layout(std430, binding = kBindObscurance) writeonly buffer Obscurance { float obscurance[]; };
-uniform float reach;  // radius of the samples, as a share of the distance to the eye
+uniform float reach;   // radius of the samples, as a share of the distance to the eye
+uniform float relief;  // how much a soft light beside the eye counts, 0 to 1
 
 const int kSpiralSamples = 10;
 const float kSpiralTurns = 7.0;
@@ -39,7 +40,7 @@ void main() {
     if (pixel.x >= int(camera.width) || pixel.y >= int(camera.height)) return;
     int index = pixel.y * int(camera.width) + pixel.x;
     GBufferTexel texel = texel_at(pixel);
-    float sum = 0.0;
+    float sum = 0.0, light = 1.0;
     if (texel.depth > 0.0) {
         vec3 here = place_of(pixel, texel.depth);
         vec3 normal = (texel.albedo & kSurfelHasNormal) != 0u ? texel_normal(texel) : plane_normal(pixel, texel.depth);
@@ -60,6 +61,12 @@ void main() {
             float over = max(dot(apart, normal) - 0.003 * sight, 0.0);
             sum += fall * fall * fall * over * radius / (distance2 + 1e-4 * radius2);
         }
+        // From above the eye, to its left. Half of the light wraps around to what faces away from it.
+        vec3 eye = toward_viewer(camera, camera.origin.xyz + here);
+        vec3 from = normalize(eye + 0.6 * normalize(camera.up.xyz) - 0.6 * normalize(camera.right.xyz));
+        float cosine = dot(normal, from) * (dot(normal, eye) < 0.0 ? -1.0 : 1.0);
+        light = 1.0 - relief * (0.5 - 0.5 * cosine);
     }
-    obscurance[index] = min(sum * 5.0 / float(kSpiralSamples), 1.0);
+    float open = 1.0 - min(sum * 5.0 / float(kSpiralSamples), 1.0);
+    obscurance[index] = 1.0 - open * light;
 }

@@ -10,10 +10,13 @@
 namespace lucarne::gi {
 namespace {
 
+/// How much a light beside the eye counts: what faces away from it is .35 times as bright.
+constexpr float kRelief = .65f;
+
 constexpr EngineInfo kInfo{
     .name = "unlit",
     .label = "Scan colours",
-    .description = "the points' colours without light: flat, eye-dome lighting or ambient occlusion",
+    .description = "the points' colours without light: flat, eye-dome lighting, ambient occlusion or relief",
     .unlit = true};
 
 class UnlitEngine : public Engine {
@@ -46,6 +49,7 @@ Result<void> UnlitEngine::obscure(Frame& frame) {
     obscurance_.bind(unlit::kBindObscurance);
     set(*program, "camera", frame.camera);
     program->set("reach", static_cast<float>(frame.unlit.occlusion_reach / 100));
+    program->set("relief", frame.unlit.shading == Shading::relief ? kRelief : 0.0f);
     program->dispatch(gbuffer.width, gbuffer.height);
     return {};
 }
@@ -55,17 +59,19 @@ Result<void> UnlitEngine::render(Frame& frame) {
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, false));
     frame.times.end();
     const Shading shading = frame.unlit.shading;
-    if (shading == Shading::occlusion) {
+    const bool occluded = shading == Shading::occlusion || shading == Shading::relief;
+    if (occluded) {
         frame.times.begin("ambient occlusion");
         LUCARNE_TRY(obscure(frame));
         frame.times.end();
     }
     frame.times.begin("colours");
-    static const Defines kDefines[] = {{}, {{"LUCARNE_EYE_DOME", "1"}}, {{"LUCARNE_OCCLUSION", "1"}}};
+    static const Defines kDefines[] = {
+        {}, {{"LUCARNE_EYE_DOME", "1"}}, {{"LUCARNE_OCCLUSION", "1"}}, {{"LUCARNE_OCCLUSION", "1"}}};
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/engines/unlit/colours.comp",
                                                                    kDefines[static_cast<size_t>(shading)]));
     frame.gl.gbuffer.texels.bind_texels(unlit::kUnitTexels, TexelView::four_words);
-    if (shading == Shading::occlusion) obscurance_.bind(unlit::kBindObscurance);
+    if (occluded) obscurance_.bind(unlit::kBindObscurance);
     frame.gl.radiance.bind(unlit::kBindRadiance);
     set(*program, "camera", frame.camera);
     program->set("strength", static_cast<float>(frame.unlit.strength));

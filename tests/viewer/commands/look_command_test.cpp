@@ -114,7 +114,7 @@ TEST_F(LookCommand, TheBackgroundShowsWhereNoPointIs) {
 }
 
 TEST_F(LookCommand, TheSamePixelsForEveryNumberOfThreadsAndRuns) {
-    for (const char* shading : {"eye-dome", "occlusion"}) {
+    for (const char* shading : {"eye-dome", "occlusion", "relief"}) {
         const std::string command = "render " + at("scan.luc") +
                                     " --overwrite --engine unlit --colour intensity --shading " +
                                     std::string(shading) + " --size 128x96 --axes --legend --scale-bar -o ";

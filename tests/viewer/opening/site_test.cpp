@@ -119,6 +119,81 @@ TEST(Site, TheEyeStaysBelowLowCeilings) {
     EXPECT_LT(site.inside->eye.y, 209.5);
 }
 
+/// The points of a rectangle between two corners that differ along two axes.
+void add_rectangle(std::vector<dvec3>& points, const Box& corners, size_t count, uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit;
+    for (size_t i = 0; i < count; ++i)
+        points.push_back(corners[0] +
+                         (corners[1] - corners[0]) * dvec3(unit(random), unit(random), unit(random)));
+}
+
+Site from_station(const std::vector<dvec3>& points, const Box& box, const dvec3& station) {
+    return survey_site(points, box, 1, false, station);
+}
+
+TEST(Site, WhatOneStationSawIsSeenFromItsSide) {
+    // A façade and the ground before it, scanned from the north, where objects are not looked at from
+    // otherwise.
+    std::vector<dvec3> points;
+    add_rectangle(points, {dvec3(0, 0, 0), dvec3(10, 0, 6)}, 20000, 1);
+    add_rectangle(points, {dvec3(0, 0, 0), dvec3(10, 4, 0)}, 8000, 2);
+    const dvec3 station(4, 15, 1.7);
+    const Site site = from_station(points, {dvec3(0), dvec3(10, 4, 6)}, station);
+    ASSERT_TRUE(site.station);
+    const gi::SceneCamera camera = first_view(site, {});
+    EXPECT_GT(camera.position.y, 4) << "not behind the façade";
+    EXPECT_LT(std::abs(place(camera, {5, 0, 3}, 4.0 / 3).x), .3f);
+    for (const dvec3& corner : {dvec3(0, 0, 6), dvec3(10, 0, 6), dvec3(0, 4, 0), dvec3(10, 4, 0)}) {
+        const glm::dvec2 at = place(camera, corner, 4.0 / 3);
+        EXPECT_LE(std::max(std::abs(at.x), std::abs(at.y)), 1.01) << "all of it is in the picture";
+    }
+}
+
+TEST(Site, APictureOfADepthCameraIsUpright) {
+    for (const int down : {1, -1}) {  // y down and z ahead, or y up and z back
+        std::vector<dvec3> points;
+        add_rectangle(points, {dvec3(-1, -1, 3 * down), dvec3(1, 1, 3 * down)}, 20000, 1);
+        add_rectangle(points, {dvec3(-.3, .9 * down, 2 * down), dvec3(.3, 1. * down, 2.2 * down)}, 3000, 2);
+        const Box box = {dvec3(-1, -1, down > 0 ? 2 : -3), dvec3(1, 1, down > 0 ? 3 : -2)};
+        const Site site = from_station(points, box, dvec3(0));
+        ASSERT_TRUE(site.station) << down;
+        const gi::SceneCamera camera = first_view(site, {});
+        const glm::dvec2 above = place(camera, {0, -.8 * down, 3 * down}, 1),
+                         below = place(camera, {0, .8 * down, 3 * down}, 1);
+        EXPECT_GT(above.y, below.y + .5) << down;
+        const glm::dvec2 left = place(camera, {-.8, 0, 3 * down}, 1),
+                         right = place(camera, {.8, 0, 3 * down}, 1);
+        EXPECT_GT(right.x, left.x + .5) << "not mirrored";
+    }
+}
+
+TEST(Site, ACourtyardIsSeenFromTheStationInIt) {
+    std::vector<dvec3> points;
+    const Box court = {dvec3(0), dvec3(20, 30, 8)};
+    add_faces(points, court, 60000, false, 2);
+    const dvec3 station(10, 10, 1.7);
+    const Site site = from_station(points, court, station);
+    ASSERT_NE(site.kind, SiteKind::interior);
+    ASSERT_TRUE(site.station);
+    const gi::SceneCamera camera = first_view(site, {});
+    EXPECT_LT(glm::distance(camera.position, station), 1e-9);
+    EXPECT_NEAR(camera.target.z, camera.position.z, 1e-9);
+}
+
+TEST(Site, AStationThatSeesLittleIsNotBelieved) {
+    std::vector<dvec3> points;
+    const Box block = {dvec3(0), dvec3(.8, .8, 1.2)};
+    add_faces(points, block, 60000, true, 2);
+    EXPECT_TRUE(from_station(points, block, {.4, .4, .6}).station);
+    EXPECT_FALSE(from_station(points, block, {10, 3, 1}).station) << "most sides face away from it";
+    EXPECT_FALSE(from_station(points, block, {std::nan(""), 3, 1}).station);
+    // A room that is seen from inside needs none.
+    std::vector<dvec3> walls;
+    add_faces(walls, kRoom, 60000, true, 1);
+    EXPECT_FALSE(from_station(walls, kRoom, (kRoom[0] + kRoom[1]) / 2.0).station);
+}
+
 TEST(Site, ARoomWithoutCeilingIsSeenFromOutside) {
     std::vector<dvec3> points;
     add_faces(points, kRoom, 60000, false, 2);
@@ -327,6 +402,17 @@ TEST(Moods, EveryMoodLightsEveryKindOfSite) {
     EXPECT_FALSE(find_mood("gloom"));
     EXPECT_EQ(usual_mood(sites[0]), Mood::evening);
     EXPECT_EQ(usual_mood(sites[1]), Mood::daylight);
+}
+
+TEST(Moods, ScansWithoutColoursShowTheirShape) {
+    const Site site = room();
+    gi::Scene scene;
+    set_mood(scene, Mood::scan_colours, site, first_view(site, {}));
+    EXPECT_EQ(scene.look.unlit.shading, gi::Shading::occlusion);
+    Site grey = site;
+    grey.coloured = false;
+    set_mood(scene, Mood::scan_colours, grey, first_view(grey, {}));
+    EXPECT_EQ(scene.look.unlit.shading, gi::Shading::relief);
 }
 
 TEST(Moods, RakingLightStandsBesideAWallAndGrazesIt) {

@@ -52,7 +52,7 @@ TEST_F(UnlitTest, FlatColoursAreThePointsOwnWhateverTheLights) {
 TEST_F(UnlitTest, WhereNoPointIsTheBackgroundShows) {
     LitOptions options;
     options.background = {0.1f, 0.2f, 0.3f};
-    for (const Shading shading : {Shading::flat, Shading::eye_dome, Shading::occlusion}) {
+    for (const Shading shading : {Shading::flat, Shading::eye_dome, Shading::occlusion, Shading::relief}) {
         const Lit empty = draw({{{0, 5, 0}, {0, -1, 0}, kX, .001f, 1e-6f, 0}}, ahead(), shading, options);
         EXPECT_LT(glm::distance(empty.at(3, 3), glm::vec3(0.1f, 0.2f, 0.3f)), 1e-6f);
     }
@@ -104,6 +104,31 @@ TEST_F(UnlitTest, OcclusionDarkensACornerAndLeavesAnOpenFloorBright) {
         EXPECT_LT(corner, 0.38f) << "with normals: " << normals;
         EXPECT_GT(floor, 0.46f) << "with normals: " << normals;
     }
+}
+
+TEST_F(UnlitTest, ReliefTellsSidesOfOneColourApart) {
+    std::vector<Surfel> surfels = crease(true);
+    scenes::add_rectangle(surfels, {-2.5, 2, -1}, -2.0f * kY, 4.0f * kZ, 150,
+                          glm::vec3(0.5f));  // to the left
+    scenes::add_rectangle(surfels, {2.5, 2, -1}, -2.0f * kY, 4.0f * kZ, 150,
+                          glm::vec3(0.5f));  // to the right
+    const CameraView camera = look({0, -4, 1.5f}, {0, 2, 0.5f}, kWidth, kHeight);
+    const auto brightest = [&](Shading shading, auto&& here) {
+        const Lit lit = draw(surfels, camera, shading);
+        float most = 0;
+        for (uint32_t y = 4; y < kHeight - 4; ++y)
+            for (uint32_t x = 4; x < kWidth - 4; ++x)
+                if (lit.texels[y * kWidth + x].depth > 0 && here(lit.position(x, y)))
+                    most = std::max(most, lit.at(x, y).x);
+        return most;
+    };
+    const auto left = [](const glm::vec3& p) { return p.x < -2.45f && p.y < 1.7f && p.z > -.7f; };
+    const auto right = [](const glm::vec3& p) { return p.x > 2.45f && p.y < 1.7f && p.z > -.7f; };
+    const auto floor = [](const glm::vec3& p) { return p.z < -.95f && p.y < 1 && std::abs(p.x) < 1; };
+    EXPECT_NEAR(brightest(Shading::occlusion, left), brightest(Shading::occlusion, right), .02f);
+    EXPECT_LT(brightest(Shading::relief, left), .8f * brightest(Shading::relief, right))
+        << "the light comes from the left";
+    EXPECT_GT(brightest(Shading::relief, floor), 1.1f * brightest(Shading::relief, left));
 }
 
 /// A camera that looks at the crease from a distance, orthographic or perspective; its view is 2 m high
