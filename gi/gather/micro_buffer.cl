@@ -1,0 +1,353 @@
+// Draws the tree of surfels into a micro-buffer, a small picture of the half space above a point (gather.cl).
+#include "gi/gather/gather_point.h"
+#include "gi/tree/wide_node.h"
+
+#define GRID LUCARNE_GRID
+#define ROW LUCARNE_ROW
+#define PIXELS (GRID * ROW)
+// Nodes are opened if their radius over their distance is larger. With buffers of 24^2 whole nodes are four pixels
+// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are opened further, and
+// so are surfaces whose discs might appear half a pixel from where they are.
+#define LARGEST fmin(4.0f / GRID, 0.2f)
+#define THICKEST (0.7f / GRID)
+#define LARGEST_THICK fmin(2.0f / GRID, 0.1f)
+#define MOST_SMALL 4  // pixels along a side of what is drawn together with its neighbours
+#define STACK 456  // seven a level; trees of 2^32 surfels have at most 64 levels (kMedianLevel)
+#define EMPTY 0xffffffffu
+#define NOTHING 1e30f
+#define MOST_SHIFT 4.0f  // in lifts, see seen_slot()
+
+// As fmin() where neither is NaN, in one instruction.
+#define LEAST(a, b) select(b, a, (a) < (b))
+
+// As any() for the result of a comparison, without a branch for each number.
+bool any_of(int8 met) {
+    ulong4 pairs = as_ulong4(met);
+    ulong2 two = pairs.lo | pairs.hi;
+    return (two.x | two.y) != 0;
+}
+
+// Numbers from 0 to 1 for a number and the seven that follow it.
+float8 fractions_of(uint first) {
+    uint8 seeds = first + (uint8)(0, 1, 2, 3, 4, 5, 6, 7);
+    seeds ^= seeds >> 16;
+    seeds *= 0x7feb352du;
+    seeds ^= seeds >> 15;
+    seeds *= 0x846ca68bu;
+    seeds ^= seeds >> 16;
+    return convert_float8(seeds >> 8) * 0x1p-24f;
+}
+
+// The first of these numbers.
+float fraction_of(uint seed) {
+    seed ^= seed >> 16;
+    seed *= 0x7feb352du;
+    seed ^= seed >> 15;
+    seed *= 0x846ca68bu;
+    seed ^= seed >> 16;
+    return convert_float(seed >> 8) * 0x1p-24f;
+}
+
+// Pushes those children for which `go` is set; returns the new height of the stack.
+int push(int8 go, int8 child, int* stack, int top) {
+    if (!any_of(go)) return top;
+    int goes[8], children[8];
+    vstore8(go, 0, goes);
+    vstore8(child, 0, children);
+    for (int k = 0; k < 8; ++k) {
+        stack[top] = children[k];
+        top += goes[k] != 0;
+    }
+    return top;
+}
+
+float3 slot_middle(global const WideNode* nodes, uint slot) {
+    global const WideNode* node = nodes + slot / 8;
+    uint k = slot % 8;
+    return (float3)(node->x[k], node->y[k], node->z[k]);
+}
+float3 slot_axis(global const WideNode* nodes, uint slot) {
+    global const WideNode* node = nodes + slot / 8;
+    uint k = slot % 8;
+    return (float3)(node->nx[k], node->ny[k], node->nz[k]);
+}
+
+// Returns the slot of the first surfel that a ray meets up to the distance `most`, which becomes its distance; EMPTY
+// if there is none.
+uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, float* most) {
+    int stack[STACK];
+    int top = 0;
+    uint found = EMPTY;
+    stack[top++] = 0;
+    while (top > 0) {
+        int at = stack[--top];
+        global const WideNode* node = nodes + at;
+        float8 dx = vload8(0, node->x) - from.x, dy = vload8(0, node->y) - from.y, dz = vload8(0, node->z) - from.z;
+        float8 bound = vload8(0, node->bound);
+        int8 child = vload8(0, node->child);
+        float8 along = dx * direction.x + dy * direction.y + dz * direction.z;
+        float8 beside = dx * dx + dy * dy + dz * dz - along * along;
+        int8 near = (beside <= bound * bound * 1.0001f) & (along > -bound) & (along < *most + bound);
+        int8 go = near & (child >= 0);
+        top = push(go, child, stack, top);
+        int8 leaf = near & (child == (int8)(kLeafChild));
+        if (!any_of(leaf)) continue;
+        float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
+        float8 distance = (dx * nx + dy * ny + dz * nz) / (direction.x * nx + direction.y * ny + direction.z * nz);
+        float8 ox = direction.x * distance - dx, oy = direction.y * distance - dy, oz = direction.z * distance - dz;
+        int8 met = leaf & (distance > 0.0f) & (ox * ox + oy * oy + oz * oz <= bound * bound);
+        if (!any_of(met)) continue;
+        int meets[8];
+        float distances[8];
+        vstore8(met, 0, meets);
+        vstore8(distance, 0, distances);
+        for (int k = 0; k < 8; ++k) {
+            uint slot = (uint)(at * 8 + k);
+            if (!meets[k] || distances[k] > *most || (distances[k] == *most && slot > found)) continue;
+            *most = distances[k];
+            found = slot;
+        }
+    }
+    return found;
+}
+
+// Returns where rays start, `lift` above the surface. The picture may show the rim of a disc that lies a little behind
+// another surface (kRimPush). Rays have to start on the viewer's side of that surface, or the rims of a sealed room
+// would be lit from outside.
+float3 start_of(global const WideNode* nodes, GatherPoint point) {
+    float3 position = (float3)(point.position.x, point.position.y, point.position.z);
+    float3 normal = (float3)(point.normal.x, point.normal.y, point.normal.z);
+    float3 viewer = (float3)(point.viewer.x, point.viewer.y, point.viewer.z);
+    float3 start = position + normal * point.lift;
+    if (dot(viewer, viewer) == 0.0f) return start;
+    float distance = 8.0f * point.lift;
+    uint hides = first_surfel(nodes, start, viewer, &distance);
+    if (hides == EMPTY) return start;
+    float radius = nodes[hides / 8].bound[hides % 8];
+    if (distance > 2.0f * fmax(point.lift, radius)) return start;  // another object in front of it
+    float3 axis = slot_axis(nodes, hides);
+    return start + viewer * distance + axis * (dot(axis, viewer) > 0.0f ? radius : -radius);
+}
+
+// Returns whether a point of the plane of a node's child, relative to its middle, is in a part of its box that its mask
+// has.
+bool hides(global const WideNode* node, int k, float x, float y, float z) {
+    uint low = node->mask_low[k], high = node->mask_high[k];
+    if ((low & high) == 0xffffffffu) return true;
+    float size_x = fabs(node->nx[k]), size_y = fabs(node->ny[k]), size_z = fabs(node->nz[k]);
+    float i = (x - node->low_x[k]) * (8.0f / (node->high_x[k] - node->low_x[k]));
+    float j = (y - node->low_y[k]) * (8.0f / (node->high_y[k] - node->low_y[k]));
+    float l = (z - node->low_z[k]) * (8.0f / (node->high_z[k] - node->low_z[k]));
+    if (size_x >= size_y && size_x >= size_z) {
+        i = j;
+        j = l;
+    } else if (size_y >= size_z) {
+        j = i;
+        i = l;
+    }
+    uint bit = convert_uint_sat(fmin(i, 7.0f)) + 8u * convert_uint_sat(fmin(j, 7.0f));
+    return (((bit >= 32u ? high : low) >> (bit & 31u)) & 1u) != 0u;
+}
+
+// Returns whether points of a node's plane, relative to its middle, are in parts of its box that its mask has.
+int8 hidden(uint mask_low, uint mask_high, float3 axis, float3 low, float3 high, float8 x, float8 y, float8 z) {
+    float3 size = fabs(axis), scale = 8.0f / (high - low);
+    float8 i, j;
+    if (size.x >= size.y && size.x >= size.z) {
+        i = (y - low.y) * scale.y;
+        j = (z - low.z) * scale.z;
+    } else if (size.y >= size.z) {
+        i = (z - low.z) * scale.z;
+        j = (x - low.x) * scale.x;
+    } else {
+        i = (x - low.x) * scale.x;
+        j = (y - low.y) * scale.y;
+    }
+    uint8 bit = convert_uint8_sat(fmin(i, 7.0f)) + 8u * convert_uint8_sat(fmin(j, 7.0f));
+    uint8 word = select((uint8)(mask_low), (uint8)(mask_high), bit >= 32u);
+    return ((word >> (bit & 31u)) & 1u) != 0u;
+}
+
+// The directions of all pixels, zero where a pixel has no ray.
+typedef struct {
+    float rows[3 * PIXELS];  // all x, all y, all z
+    float4 each[PIXELS + MOST_SMALL * (ROW + 1)];  // what is drawn side by side may reach beyond the last
+} Rays;
+
+// Eight children of a node, as they appear from a place.
+typedef struct {
+    float8 dx, dy, dz;                 // middles, from the start of the rays
+    float8 nx, ny, nz, plane;          // their planes: n . p = plane
+    int8 cloud;
+    int8 left, right, upper, lower;    // the pixels that they may cover
+} Children;
+
+int largest_of(int8 v) {
+    int4 four = max(v.lo, v.hi);
+    int2 two = max(four.lo, four.hi);
+    return max(two.x, two.y);
+}
+
+// Draws one of eight children, which covers many pixels: eight of a row at a time.
+void draw_large(global const WideNode* node, Children* children, int k, uint slot, const float* rays, uint seed,
+                float* depths, uint* slots) {
+    float x = ((float*)&children->dx)[k], y = ((float*)&children->dy)[k], z = ((float*)&children->dz)[k];
+    float3 axis = (float3)(((float*)&children->nx)[k], ((float*)&children->ny)[k], ((float*)&children->nz)[k]);
+    float plane = ((float*)&children->plane)[k];
+    int first = ((int*)&children->left)[k], last = ((int*)&children->right)[k], end = ((int*)&children->lower)[k];
+    float radius2 = node->bound[k] * node->bound[k];
+    float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
+    float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
+    uint mask_low = node->mask_low[k], mask_high = node->mask_high[k];
+    bool whole = (mask_low & mask_high) == 0xffffffffu, scattered = high.x == kCloud;
+    float part = low.x;
+    if (scattered) low = (float3)(-NOTHING), high = (float3)(NOTHING);
+    for (int j = ((int*)&children->upper)[k]; j <= end; ++j)
+        for (int i = first; i <= last; i += 8) {
+            int pixel = j * ROW + i;
+            float8 rx = vload8(0, rays + pixel), ry = vload8(0, rays + PIXELS + pixel);
+            float8 rz = vload8(0, rays + 2 * PIXELS + pixel);
+            float8 t = plane / (rx * axis.x + ry * axis.y + rz * axis.z);
+            float8 ox = rx * t - x, oy = ry * t - y, oz = rz * t - z;
+            float8 depth = vload8(0, depths + pixel);
+            uint8 held = vload8(0, slots + pixel);
+            int8 met = (t > 0.0f) & ((t < depth) | ((t == depth) & (held > slot)));
+            met &= (ox >= low.x) & (ox <= high.x) & (oy >= low.y) & (oy <= high.y);
+            met &= (oz >= low.z) & (oz <= high.z) & (ox * ox + oy * oy + oz * oz <= radius2);
+            if (scattered)
+                met &= fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel) < part;
+            else if (!whole)
+                met &= hidden(mask_low, mask_high, axis, low, high, ox, oy, oz);
+            vstore8(select(depth, t, met), 0, depths + pixel);
+            vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
+        }
+}
+
+// Draws those of eight children that cover few pixels: one pixel of each at a time. Most rays pass beside them, so what
+// is left to do for those that do not is done for each by itself.
+void draw_small(global const WideNode* node, Children* children, int8 small, uint first_slot, const float4* rays,
+                uint seed, float* depths, uint* slots) {
+    float8 dx = children->dx, dy = children->dy, dz = children->dz;
+    float8 nx = children->nx, ny = children->ny, nz = children->nz, plane = children->plane;
+    float8 radius = vload8(0, node->bound), radius2 = radius * radius;
+    float8 low_x = select(vload8(0, node->low_x), (float8)(-NOTHING), children->cloud);
+    float8 low_y = select(vload8(0, node->low_y), (float8)(-NOTHING), children->cloud);
+    float8 low_z = select(vload8(0, node->low_z), (float8)(-NOTHING), children->cloud);
+    float8 high_x = select(vload8(0, node->high_x), (float8)(NOTHING), children->cloud);
+    float8 high_y = select(vload8(0, node->high_y), (float8)(NOTHING), children->cloud);
+    float8 high_z = select(vload8(0, node->high_z), (float8)(NOTHING), children->cloud);
+    int8 width = select((int8)(0), children->right - children->left + 1, small);
+    int8 height = select((int8)(0), children->lower - children->upper + 1, small);
+    int most_wide = largest_of(width), most_tall = largest_of(height);
+    int corners[8];
+    vstore8(select((int8)(0), children->upper * ROW + children->left, small), 0, corners);
+    for (int j = 0; j < most_tall; ++j)
+        for (int i = 0; i < most_wide; ++i) {
+            const float4* pixel = rays + (j * ROW + i);
+            float4 r0 = pixel[corners[0]], r1 = pixel[corners[1]], r2 = pixel[corners[2]], r3 = pixel[corners[3]];
+            float4 r4 = pixel[corners[4]], r5 = pixel[corners[5]], r6 = pixel[corners[6]], r7 = pixel[corners[7]];
+            float8 rx = (float8)(r0.x, r1.x, r2.x, r3.x, r4.x, r5.x, r6.x, r7.x);
+            float8 ry = (float8)(r0.y, r1.y, r2.y, r3.y, r4.y, r5.y, r6.y, r7.y);
+            float8 rz = (float8)(r0.z, r1.z, r2.z, r3.z, r4.z, r5.z, r6.z, r7.z);
+            float8 t = plane / (rx * nx + ry * ny + rz * nz);
+            float8 ox = rx * t - dx, oy = ry * t - dy, oz = rz * t - dz;
+            // Few comparisons: each costs more than arithmetic.
+            float8 room = LEAST(LEAST(ox - low_x, high_x - ox), LEAST(oy - low_y, high_y - oy));
+            room = LEAST(room, LEAST(oz - low_z, high_z - oz));
+            float8 most = select((float8)(-1.0f), radius2, (width > i) & (height > j));
+            int8 met = (ox * ox + oy * oy + oz * oz <= most) & (room >= 0.0f) & (t > 0.0f);
+            if (!any_of(met)) continue;
+            int meets[8];
+            float ts[8], xs[8], ys[8], zs[8];
+            vstore8(met, 0, meets);
+            vstore8(t, 0, ts);
+            vstore8(ox, 0, xs);
+            vstore8(oy, 0, ys);
+            vstore8(oz, 0, zs);
+            for (int k = 0; k < 8; ++k) {
+                if (!meets[k]) continue;
+                int at = corners[k] + j * ROW + i;
+                uint slot = first_slot + (uint)k;
+                if (ts[k] > depths[at] || (ts[k] == depths[at] && slots[at] < slot)) continue;
+                if (node->high_x[k] == kCloud) {
+                    if (fraction_of(slot * 0x9e3779b9u + seed + (uint)at) >= node->low_x[k]) continue;
+                } else if (!hides(node, k, xs[k], ys[k], zs[k])) {
+                    continue;
+                }
+                depths[at] = ts[k];
+                slots[at] = slot;
+            }
+        }
+}
+
+// Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
+// and its slot. `side` and `across` are the axes of the picture, which reaches to `scale` along them; `rays` are the
+// directions of its pixels, zero where a pixel has no ray.
+void draw(global const WideNode* nodes, const Rays* rays, float3 start, float3 side, float3 across, float3 axis,
+          float3 normal, float scale, uint seed, float* depths, uint* slots) {
+    float pixels = 0.5f * GRID / scale;
+    int stack[STACK];
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        int at = stack[--top];
+        global const WideNode* node = nodes + at;
+        float8 dx = vload8(0, node->x) - start.x, dy = vload8(0, node->y) - start.y, dz = vload8(0, node->z) - start.z;
+        float8 bound = vload8(0, node->bound), thickness = vload8(0, node->thickness);
+        float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
+        int8 child = vload8(0, node->child);
+        float8 height = dx * normal.x + dy * normal.y + dz * normal.z;
+        float8 facing = nx * normal.x + ny * normal.y + nz * normal.z;
+        float8 distance2 = dx * dx + dy * dy + dz * dz;
+        // What the discs of the child rise above its middle: those of the point's own surface lie below the start.
+        float8 rise = fmin(bound, bound * sqrt(fmax(1.0f - facing * facing, 0.0f)) + thickness);
+        int8 above = (height > -rise) & (child != (int8)(kNoChild));
+        float8 along = dx * axis.x + dy * axis.y + dz * axis.z;
+        above &= along > -bound;
+        // Spheres beside the cone that the picture shows: sin(a + b) <= sin a + sin b.
+        if (scale < 1.0f)
+            above &= distance2 - along * along <= (sqrt(distance2) * scale + bound) * (sqrt(distance2) * scale + bound);
+        int8 cloud = vload8(0, node->high_x) == (float8)(kCloud);
+        float8 plane = dx * nx + dy * ny + dz * nz;
+        int8 thick = cloud | (thickness * thickness > distance2 * (THICKEST * THICKEST * scale * scale));
+        float8 limit = select((float8)(LARGEST), (float8)(LARGEST_THICK), thick) * scale;
+        int8 large = (bound * bound > distance2 * limit * limit) & (child >= 0);
+        int8 go = above & large, drawn = above & ~large;
+        top = push(go, child, stack, top);
+        if (!any_of(drawn)) continue;
+        float8 nearer = rsqrt(distance2);
+        // The picture of the cone about a sphere: its directions are c u + s v with unit vectors v across u.
+        float8 s = fmin(bound * nearer, 1.0f), c = sqrt(1.0f - s * s) * (0.5f * GRID / scale);
+        float8 ux = (dx * side.x + dy * side.y + dz * side.z) * nearer;
+        float8 uy = (dx * across.x + dy * across.y + dz * across.z) * nearer;
+        float8 px = ux * c + (0.5f * GRID - 0.5f), py = uy * c + (0.5f * GRID - 0.5f);
+        float8 wide = s * sqrt(fmax(1.0f - ux * ux, 0.0f)) * pixels + 0.5f;
+        float8 tall = s * sqrt(fmax(1.0f - uy * uy, 0.0f)) * pixels + 0.5f;
+        // Cones about the end of an axis reach to its end.
+        wide = select(wide, (float8)(2.0f * GRID), (s >= 1.0f) | (ux * ux + s * s > 1.0f));
+        tall = select(tall, (float8)(2.0f * GRID), (s >= 1.0f) | (uy * uy + s * s > 1.0f));
+        Children children;
+        children.dx = dx;
+        children.dy = dy;
+        children.dz = dz;
+        children.nx = select(nx, dx * nearer, cloud);
+        children.ny = select(ny, dy * nearer, cloud);
+        children.nz = select(nz, dz * nearer, cloud);
+        children.plane = select(plane, distance2 * nearer, cloud);
+        children.cloud = cloud;
+        children.left = convert_int8(fmax(ceil(px - wide), 0.0f));
+        children.right = convert_int8(fmin(floor(px + wide), GRID - 1.0f));
+        children.upper = convert_int8(fmax(ceil(py - tall), 0.0f));
+        children.lower = convert_int8(fmin(floor(py + tall), GRID - 1.0f));
+        int8 columns = children.right - children.left + 1, rows = children.lower - children.upper + 1;
+        drawn &= (columns > 0) & (rows > 0);
+        int8 small = drawn & (columns <= MOST_SMALL) & (rows <= MOST_SMALL);
+        if (any_of(small)) draw_small(node, &children, small, (uint)at * 8, rays->each, seed, depths, slots);
+        int8 others = drawn & ~small;
+        if (!any_of(others)) continue;
+        int draws[8];
+        vstore8(others, 0, draws);
+        for (int k = 0; k < 8; ++k)
+            if (draws[k]) draw_large(node, &children, k, (uint)(at * 8 + k), rays->rows, seed, depths, slots);
+    }
+}
