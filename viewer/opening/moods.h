@@ -42,7 +42,7 @@ std::string_view engine_of(Mood mood, SiteKind kind);
 bool shows_moods(std::string_view engine);
 
 /// Replaces the scene's lights, sky, backdrop and exposure; the points' colours for clay, and from clay.
-/// Light comes from the left of `camera`'s view of objects, and from the north-west for terrain. All
+/// Light comes from the left of `camera`'s view of objects, and by day from the north-west for terrain. All
 /// strengths are physical: a mood looks the same whatever the site's size and unit.
 void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera);
 

@@ -160,9 +160,12 @@ void ViewSession::take_extent() {
     const bool others = shown_scans_ != scans_.shown();
     shown_scans_ = scans_.shown();
     // More points of the same scans must not shake the picture. Only once, when there are enough of them, the
-    // view follows if they show something else than the first few.
+    // view follows if they show something else than the first few; and once if the conversion has found the
+    // station that all was scanned from.
     const bool sure = start->site.sure || scans_.settled();
-    const bool follows = first || others || (sure && !sure_ && !alike(placed_for_, start->site));
+    const bool station_found = sure && start->site.station && !placed_for_.station;
+    const bool follows =
+        first || others || station_found || (sure && !sure_ && !alike(placed_for_, start->site));
     sure_ = sure || (sure_ && !others);
     model_.view.scene_size = start->scene_size();
     model_.view.box = start->box;
