@@ -151,6 +151,13 @@ TEST_F(WindowWithProject, OfAnotherWindowIsShownAndLeftAlone) {
         return log().find("open in another window (process") != std::string::npos;
     })) << log();
     EXPECT_THAT(log(), HasSubstr("your work on this scan is shown again"));
+    // Keys that come before the second window is ready are lost.
+    const auto has_both_pictures = [&] {
+        const std::string text = log();
+        const size_t first_window = text.find("first picture after");
+        return first_window != text.npos && text.find("first picture after", first_window + 1) != text.npos;
+    };
+    ASSERT_TRUE(eventually(has_both_pictures)) << log();
     const std::string before = bytes_of(file);
     xdo("sleep 1 key Insert sleep 5 key ctrl+shift+s");
     ASSERT_TRUE(confirmed([&] { return std::filesystem::exists(folder_ / "cornell-project.json"); }))
