@@ -38,16 +38,6 @@ float8 fractions_of(uint first) {
     return convert_float8(seeds >> 8) * 0x1p-24f;
 }
 
-// The first of these numbers.
-float fraction_of(uint seed) {
-    seed ^= seed >> 16;
-    seed *= 0x7feb352du;
-    seed ^= seed >> 15;
-    seed *= 0x846ca68bu;
-    seed ^= seed >> 16;
-    return convert_float(seed >> 8) * 0x1p-24f;
-}
-
 // Pushes those children for which `go` is set; returns the new height of the stack.
 int push(int8 go, int8 child, int* stack, int top) {
     if (!any_of(go)) return top;
@@ -270,7 +260,7 @@ void draw_small(global const WideNode* node, Children* children, int8 small, uin
                 uint slot = first_slot + (uint)k;
                 if (ts[k] > depths[at] || (ts[k] == depths[at] && slots[at] < slot)) continue;
                 if (node->high_x[k] == kCloud) {
-                    if (fraction_of(slot * 0x9e3779b9u + seed + (uint)at) >= node->low_x[k]) continue;
+                    if (fractions_of(slot * 0x9e3779b9u + seed + (uint)at).s0 >= node->low_x[k]) continue;
                 } else if (!hides(node, k, xs[k], ys[k], zs[k])) {
                     continue;
                 }
