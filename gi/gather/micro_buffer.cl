@@ -139,25 +139,6 @@ bool hides(global const WideNode* node, int k, float x, float y, float z) {
     return (((bit >= 32u ? high : low) >> (bit & 31u)) & 1u) != 0u;
 }
 
-// Returns whether points of a node's plane, relative to its middle, are in parts of its box that its mask has.
-int8 hidden(uint mask_low, uint mask_high, float3 axis, float3 low, float3 high, float8 x, float8 y, float8 z) {
-    float3 size = fabs(axis), scale = 8.0f / (high - low);
-    float8 i, j;
-    if (size.x >= size.y && size.x >= size.z) {
-        i = (y - low.y) * scale.y;
-        j = (z - low.z) * scale.z;
-    } else if (size.y >= size.z) {
-        i = (z - low.z) * scale.z;
-        j = (x - low.x) * scale.x;
-    } else {
-        i = (x - low.x) * scale.x;
-        j = (y - low.y) * scale.y;
-    }
-    uint8 bit = convert_uint8_sat(fmin(i, 7.0f)) + 8u * convert_uint8_sat(fmin(j, 7.0f));
-    uint8 word = select((uint8)(mask_low), (uint8)(mask_high), bit >= 32u);
-    return ((word >> (bit & 31u)) & 1u) != 0u;
-}
-
 // The directions of all pixels, zero where a pixel has no ray.
 typedef struct {
     float rows[3 * PIXELS];  // all x, all y, all z
@@ -178,6 +159,20 @@ int largest_of(int8 v) {
     return max(two.x, two.y);
 }
 
+// Lets a pixel show a child that its ray meets at the distance t, at a place relative to the child's middle, if the
+// child hides that place and nothing nearer.
+void show(global const WideNode* node, int k, uint slot, int pixel, float t, float x, float y, float z, uint seed,
+          float* depths, uint* slots) {
+    if (t > depths[pixel] || (t == depths[pixel] && slots[pixel] < slot)) return;
+    if (node->high_x[k] == kCloud) {
+        if (fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel).s0 >= node->low_x[k]) return;
+    } else if (!hides(node, k, x, y, z)) {
+        return;
+    }
+    depths[pixel] = t;
+    slots[pixel] = slot;
+}
+
 // Draws one of eight children, which covers many pixels: eight of a row at a time.
 void draw_large(global const WideNode* node, Children* children, int k, uint slot, const float* rays, uint seed,
                 float* depths, uint* slots) {
@@ -188,10 +183,7 @@ void draw_large(global const WideNode* node, Children* children, int k, uint slo
     float radius2 = node->bound[k] * node->bound[k];
     float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
     float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
-    uint mask_low = node->mask_low[k], mask_high = node->mask_high[k];
-    bool whole = (mask_low & mask_high) == 0xffffffffu, scattered = high.x == kCloud;
-    float part = low.x;
-    if (scattered) low = (float3)(-NOTHING), high = (float3)(NOTHING);
+    if (high.x == kCloud) low = (float3)(-NOTHING), high = (float3)(NOTHING);
     for (int j = ((int*)&children->upper)[k]; j <= end; ++j)
         for (int i = first; i <= last; i += 8) {
             int pixel = j * ROW + i;
@@ -199,17 +191,14 @@ void draw_large(global const WideNode* node, Children* children, int k, uint slo
             float8 rz = vload8(0, rays + 2 * PIXELS + pixel);
             float8 t = plane / (rx * axis.x + ry * axis.y + rz * axis.z);
             float8 ox = rx * t - x, oy = ry * t - y, oz = rz * t - z;
-            float8 depth = vload8(0, depths + pixel);
-            uint8 held = vload8(0, slots + pixel);
-            int8 met = (t > 0.0f) & ((t < depth) | ((t == depth) & (held > slot)));
+            int8 met = (t > 0.0f) & (t <= vload8(0, depths + pixel)) & (ox * ox + oy * oy + oz * oz <= radius2);
             met &= (ox >= low.x) & (ox <= high.x) & (oy >= low.y) & (oy <= high.y);
-            met &= (oz >= low.z) & (oz <= high.z) & (ox * ox + oy * oy + oz * oz <= radius2);
-            if (scattered)
-                met &= fractions_of(slot * 0x9e3779b9u + seed + (uint)pixel) < part;
-            else if (!whole)
-                met &= hidden(mask_low, mask_high, axis, low, high, ox, oy, oz);
-            vstore8(select(depth, t, met), 0, depths + pixel);
-            vstore8(select(held, (uint8)(slot), met), 0, slots + pixel);
+            met &= (oz >= low.z) & (oz <= high.z);
+            if (!any_of(met)) continue;
+            for (int lane = 0; lane < 8; ++lane)
+                if (((int*)&met)[lane])
+                    show(node, k, slot, pixel + lane, ((float*)&t)[lane], ((float*)&ox)[lane], ((float*)&oy)[lane],
+                         ((float*)&oz)[lane], seed, depths, slots);
         }
 }
 
@@ -247,26 +236,10 @@ void draw_small(global const WideNode* node, Children* children, int8 small, uin
             float8 most = select((float8)(-1.0f), radius2, (width > i) & (height > j));
             int8 met = (ox * ox + oy * oy + oz * oz <= most) & (room >= 0.0f) & (t > 0.0f);
             if (!any_of(met)) continue;
-            int meets[8];
-            float ts[8], xs[8], ys[8], zs[8];
-            vstore8(met, 0, meets);
-            vstore8(t, 0, ts);
-            vstore8(ox, 0, xs);
-            vstore8(oy, 0, ys);
-            vstore8(oz, 0, zs);
-            for (int k = 0; k < 8; ++k) {
-                if (!meets[k]) continue;
-                int at = corners[k] + j * ROW + i;
-                uint slot = first_slot + (uint)k;
-                if (ts[k] > depths[at] || (ts[k] == depths[at] && slots[at] < slot)) continue;
-                if (node->high_x[k] == kCloud) {
-                    if (fractions_of(slot * 0x9e3779b9u + seed + (uint)at).s0 >= node->low_x[k]) continue;
-                } else if (!hides(node, k, xs[k], ys[k], zs[k])) {
-                    continue;
-                }
-                depths[at] = ts[k];
-                slots[at] = slot;
-            }
+            for (int k = 0; k < 8; ++k)
+                if (((int*)&met)[k])
+                    show(node, k, first_slot + (uint)k, corners[k] + j * ROW + i, ((float*)&t)[k], ((float*)&ox)[k],
+                         ((float*)&oy)[k], ((float*)&oz)[k], seed, depths, slots);
         }
 }
 
