@@ -184,8 +184,7 @@ bool alike(const Site& a, const Site& b) {
         return std::abs(site.enclosed_share - kInterior) <= kUncertain;
     };
     const bool same_kind = a.kind == b.kind || (between(a) && between(b));
-    return same_kind && a.inside.has_value() == b.inside.has_value() &&
-           a.station.has_value() == b.station.has_value() && moved <= kSame * size;
+    return same_kind && a.inside.has_value() == b.inside.has_value() && moved <= kSame * size;
 }
 
 }  // namespace lucarne::viewer

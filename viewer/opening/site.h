@@ -68,9 +68,9 @@ Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3
                  double metres_per_unit, bool has_gaps = false,
                  const std::optional<glm::dvec3>& station = std::nullopt);
 
-/// Returns whether two sites are of one kind, or between two kinds, both or neither of them scanned from one
-/// place, and their boxes differ by less than a twentieth, as those of a sample and of more points of the
-/// same scan do: views and light made for one suit the other.
+/// Returns whether two sites are of one kind, or between two kinds, and their boxes differ by less than a
+/// twentieth, as those of a sample and of more points of the same scan do: views and light made for one suit
+/// the other.
 bool alike(const Site& a, const Site& b);
 
 }  // namespace lucarne::viewer
