@@ -52,11 +52,13 @@ struct ShownSample {
 constexpr double kFace = 1;  ///< areas are in faces of the root cube
 
 // How the sample grows while the build runs. Its rounds take a few hundredths of the time of a build.
-constexpr uint64_t kMostGrown = 1'000'000;     ///< points
-constexpr uint64_t kLeastPerPoint = 16;        ///< points in the inputs for each point of the last round
-constexpr double kSecondsBetweenRounds = 0.5;  ///< at least
-/// Until the first round, if the build's first pass is kept: for most scans that pass is over sooner.
+constexpr uint64_t kMostGrown = 1'000'000;       ///< points
+constexpr uint64_t kLeastPerPoint = 16;          ///< points in the inputs for each point of the last round
+constexpr double kSecondsBetweenRounds = 0.5;    ///< at least
+constexpr double kSecondsBetweenPassRounds = 1;  ///< while the build's first pass is kept: both take time
+/// Until more of the inputs is read for the sample, if that pass is kept: for most scans it is over sooner.
 constexpr double kSecondsOfPass = 2;
+constexpr double kGrowth = 1.1;     ///< a sample is shown if it has this many times the points of the last
 constexpr uint64_t kManyTimes = 4;  ///< as many points as the sample has are shown in two steps
 constexpr uint64_t kMostReadBytes = uint64_t{128} << 20;  ///< of the points kept of the build's first pass
 
@@ -123,7 +125,6 @@ struct GrowingBuild::State final : BuildListener {
 
     // Used by the build's thread:
     std::shared_ptr<const LoosePoints> loose;
-    std::optional<PassSample> passing;  ///< of the build's first pass, while it runs
     std::vector<format::Entry> entries;
     std::vector<std::shared_ptr<const LooseNode>> roots;
     Clock::time_point published;
@@ -138,13 +139,16 @@ struct GrowingBuild::State final : BuildListener {
     std::mutex making;        ///< guards `header` to `publishing` against the grower
     std::mutex grower_mutex;  ///< with `grower_wakes`: for the pause between two rounds
     std::condition_variable grower_wakes;
-    std::atomic<bool> grown{true};  ///< the sample grows no more
+    std::atomic<bool> grown{true};      ///< the sample grows no more
+    std::optional<PassSample> passing;  ///< of the build's first pass, until it has ended
+    std::atomic<bool> passed{true};     ///< that pass has ended, or is not kept
 
     Result<void> take_first();
     ScanFacts facts_of(const QuickSample& points, const Cube& root) const;
     ShownSample with_surface(QuickSample points, const Cube& root) const;
     void show_sample(const Cube& root);
     void grow();
+    bool show_larger(QuickSample points);
     void end_growing();
     void publish(std::shared_ptr<const ByteSource> file);
     void show(std::shared_ptr<const NodeSource> source);
@@ -186,6 +190,12 @@ Result<void> GrowingBuild::State::take_first() {
     header = header_of(*unifier, facts_of(points, root), schema);
     sample = with_surface(std::move(points), root);
     show_sample(root);
+    if (options.read_points > 0) {
+        const uint32_t stride = unifier->schema().stride;
+        passing.emplace(stride, std::min(options.read_points, kMostReadBytes / stride),
+                        unifier->declared_points());
+        passed = false;
+    }
     return {};
 }
 
@@ -223,41 +233,58 @@ ShownSample GrowingBuild::State::with_surface(QuickSample points, const Cube& ro
     return {std::move(points), std::move(surface), root};
 }
 
-/// Replaces the sample by larger ones, until the build shows nodes of its own.
+/// Replaces the sample by larger ones, until the build shows nodes of its own: of longer fronts of the parts,
+/// and of what the build has read of the inputs so far.
 void GrowingBuild::State::grow() {
     const log::Operation::Scope scope(operation);
     tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
     const uint64_t most =
         std::max(options.sample_points, std::min(kMostGrown, sample.points.points / kLeastPerPoint));
     uint64_t points = options.first_points, read = options.first_read;
-    double pause = options.read_points > 0 ? kSecondsOfPass : kSecondsBetweenRounds;
-    while (!grown && points < most) {
+    QuickSample fronts = sample.points;
+    const auto start = Clock::now();
+    while (!grown && (points < most || !passed)) {
         {
+            const double pause = passed ? kSecondsBetweenRounds : kSecondsBetweenPassRounds;
             std::unique_lock lock(grower_mutex);
             grower_wakes.wait_for(lock, std::chrono::duration<double>(pause), [&] { return grown.load(); });
         }
         if (grown) return;
-        pause = kSecondsBetweenRounds;
-        points = std::min(2 * points, most);
-        read *= 2;
-        auto taken = arena.execute(
-            [&] { return take_sketch(*unifier, points, read, [&](uint64_t, uint64_t) { return !grown; }); });
-        if (!taken) return;  // the build will report the error
-        if (taken->positions.size() <= sample.points.positions.size()) continue;
-        taken->min = glm::min(taken->min, sample.points.min);
-        taken->max = glm::max(taken->max, sample.points.max);
-        const auto root = root_cube(taken->min, taken->max);
-        if (!root) return;
-        ShownSample larger = arena.execute([&] { return with_surface(std::move(*taken), *root); });
-        const std::lock_guard lock(making);
-        if (grown) return;
-        if (header_is_final)
-            larger.move_to(header.root);
-        else
-            header = header_of(*unifier, facts_of(larger.points, *root), schema);
-        sample = std::move(larger);
-        show_sample(header.root);
+        const bool more =
+            passed || std::chrono::duration<double>(Clock::now() - start).count() > kSecondsOfPass;
+        if (more && points < most) {
+            points = std::min(2 * points, most);
+            read *= 2;
+            auto taken = arena.execute([&] {
+                return take_sketch(*unifier, points, read, [&](uint64_t, uint64_t) { return !grown; });
+            });
+            if (!taken) return;  // the build will report the error
+            if (taken->positions.size() > fronts.positions.size()) fronts = std::move(*taken);
+        }
+        auto joined = passed ? fronts : join(*unifier, fronts, passing->some(most));
+        if (!joined || !arena.execute([&] { return show_larger(std::move(*joined)); })) return;
     }
+}
+
+/// Shows these points instead of the sample if they are more. Returns false if the sample grows no more.
+bool GrowingBuild::State::show_larger(QuickSample points) {
+    if (static_cast<double>(points.positions.size()) <
+        kGrowth * static_cast<double>(sample.points.positions.size()))
+        return true;
+    points.min = glm::min(points.min, sample.points.min);
+    points.max = glm::max(points.max, sample.points.max);
+    const auto root = root_cube(points.min, points.max);
+    if (!root) return false;
+    ShownSample larger = with_surface(std::move(points), *root);
+    const std::lock_guard lock(making);
+    if (grown) return false;
+    if (header_is_final)
+        larger.move_to(header.root);
+    else
+        header = header_of(*unifier, facts_of(larger.points, *root), schema);
+    sample = std::move(larger);
+    show_sample(header.root);
+    return true;
 }
 
 /// Lets the sample grow no more. Waits for a round that is being made.
@@ -287,40 +314,35 @@ void GrowingBuild::State::show(std::shared_ptr<const NodeSource> source) {
 }
 
 void GrowingBuild::State::read(std::span<const std::byte> records) {
-    if (options.read_points == 0) return;
-    const uint32_t stride = unifier->schema().stride;
-    if (!passing)
-        passing.emplace(stride, std::min(options.read_points, kMostReadBytes / stride),
-                        unifier->declared_points());
-    passing->add(records);
+    if (passing) passing->add(records);
 }
 
 void GrowingBuild::State::scanned(const SourceHeader& facts, const io::Schema& records) {
-    std::vector<std::byte> passed = take_passing();
-    if (!passed.empty()) end_growing();
+    std::vector<std::byte> kept = take_passing();
+    if (!kept.empty()) end_growing();
     {
         const std::lock_guard lock(making);
         header = facts;
         header.schema = schema = records;  // a few points without a normal may not be in the sample
         header_is_final = true;
-        if (passed.empty()) {
+        if (kept.empty()) {
             sample.move_to(header.root);
             return show_sample(header.root);
         }
     }
     // The surface of all points takes seconds, that of some tenths of a second.
-    const size_t stride = unifier->schema().stride, count = passed.size() / stride;
+    const size_t stride = unifier->schema().stride, count = kept.size() / stride;
     if (count >= kManyTimes * options.sample_points)
-        replace_sample(some_of(passed, stride, count / options.sample_points));
-    replace_sample(std::move(passed));
+        replace_sample(some_of(kept, stride, count / options.sample_points));
+    replace_sample(std::move(kept));
     sample = {};  // it is not needed again
 }
 
 /// Returns the points that were kept of the first pass, if they are more than those of the sample.
 std::vector<std::byte> GrowingBuild::State::take_passing() {
     if (!passing) return {};
+    passed = true;
     std::vector<std::byte> records = passing->take();
-    passing.reset();
     const std::lock_guard lock(making);
     if (records.size() <= sample.points.records.size()) return {};
     return records;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <string_view>
+#include <unordered_set>
 
 #include <glm/common.hpp>
 
@@ -152,6 +154,23 @@ Result<QuickSample> with_positions(const Unifier& inputs, QuickSample sample) {
         sample.max = glm::max(sample.max, p);
     }
     return sample;
+}
+
+Result<QuickSample> join(const Unifier& inputs, const QuickSample& sample, std::vector<std::byte> records) {
+    const size_t stride = inputs.schema().stride;
+    const auto text_of = [&](const std::vector<std::byte>& all, size_t at) {
+        return std::string_view(reinterpret_cast<const char*>(&all[at]), stride);
+    };
+    std::unordered_set<std::string_view> known;
+    for (size_t at = 0; at < sample.records.size(); at += stride) known.insert(text_of(sample.records, at));
+    QuickSample both;
+    both.points = sample.points;
+    both.has_gaps = sample.has_gaps;
+    both.records = sample.records;
+    for (size_t at = 0; at < records.size(); at += stride)
+        if (!known.contains(text_of(records, at)))
+            both.records.insert(both.records.end(), &records[at], &records[at] + stride);
+    return with_positions(inputs, std::move(both));
 }
 
 Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Sampling& sampling) {

@@ -37,6 +37,9 @@ Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Samp
 Result<QuickSample> take_sketch(const Unifier& inputs, uint64_t most, uint64_t read,
                                 const Sampling& sampling = {});
 
+/// Returns the points of the sample and those of `records`, each once. Errors: no points.
+Result<QuickSample> join(const Unifier& inputs, const QuickSample& sample, std::vector<std::byte> records);
+
 /// Sets positions and bounds from the sample's records. Errors: no points.
 Result<QuickSample> with_positions(const Unifier& inputs, QuickSample sample);
 

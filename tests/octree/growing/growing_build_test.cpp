@@ -384,25 +384,29 @@ GrowingOptions growing_options(const std::filesystem::path& output) {
     return options;
 }
 
-TEST(GrowingBuild, ItsSampleGrowsWhileTheBuildReads) {
-    const TempFolder folder;
-    constexpr uint64_t kPoints = 400'000;
-    // The build cannot read the last point before the sample has grown. Samples do not read that far.
-    std::promise<void> grown;
-    const auto waits = grown.get_future().share();
+/// Points in a cube, each with its number. The last one cannot be read before `ready`.
+GrowingBuild::Inputs inputs_that_wait(uint64_t points, std::shared_future<void> ready) {
     io::Schema schema;
     schema.position = io::PositionType::f64;
     schema.stride = 24;
     schema.add("number", io::ScalarType::u64);
     GrowingBuild::Inputs inputs;
-    inputs.push_back(
-        std::make_unique<ComputedSource>(schema, kPoints, [=](uint64_t index, std::byte* record) {
-            if (index == kPoints - 1) waits.wait_for(std::chrono::minutes(1));
-            Random random(3, index);
-            for (int axis = 0; axis < 3; ++axis) io::store(record + 8 * axis, 20 * random.uniform());
-            io::store(record + 24, index);
-        }));
-    const auto build = GrowingBuild::open(std::move(inputs), growing_options(folder / "a.luc"));
+    inputs.push_back(std::make_unique<ComputedSource>(schema, points, [=](uint64_t index, std::byte* record) {
+        if (index == points - 1) ready.wait_for(std::chrono::minutes(1));
+        Random random(3, index);
+        for (int axis = 0; axis < 3; ++axis) io::store(record + 8 * axis, 20 * random.uniform());
+        io::store(record + 24, index);
+    }));
+    return inputs;
+}
+
+TEST(GrowingBuild, ItsSampleGrowsWhileTheBuildReads) {
+    const TempFolder folder;
+    constexpr uint64_t kPoints = 400'000;
+    // The build cannot read the last point before the sample has grown. Samples do not read that far.
+    std::promise<void> grown;
+    const auto build = GrowingBuild::open(inputs_that_wait(kPoints, grown.get_future().share()),
+                                          growing_options(folder / "a.luc"));
     ASSERT_TRUE(build) << build.error().line();
     std::vector<uint64_t> points = {(*build)->state().source->nodes()[0].subtree_count};
     EXPECT_EQ(points.front(), 5'000u);
@@ -420,6 +424,34 @@ TEST(GrowingBuild, ItsSampleGrowsWhileTheBuildReads) {
     EXPECT_TRUE(std::is_sorted(points.begin(), points.end())) << "a later source has fewer points";
     EXPECT_THAT(std::set<uint64_t>(points.begin(), points.end()),
                 ::testing::IsSupersetOf({5'000u, 10'000u, 20'000u, 40'000u, unsigned{kPoints}}));
+}
+
+TEST(GrowingBuild, WhatItHasReadIsShownBeforeAllIsRead) {
+    const TempFolder folder;
+    constexpr uint64_t kPoints = 400'000, kFar = 200'000;  // no sketch reads as far
+    std::promise<void> seen;
+    GrowingOptions options = growing_options(folder / "a.luc");
+    options.read_points = kPoints;
+    const auto build =
+        GrowingBuild::open(inputs_that_wait(kPoints, seen.get_future().share()), std::move(options));
+    ASSERT_TRUE(build) << build.error().line();
+    bool told = false;
+    (*build)->begin([&] {
+        const auto source = (*build)->state().source;
+        if (told || !source->header().has_gaps) return;
+        auto numbers = numbers_in(*source);
+        std::ranges::sort(numbers);
+        EXPECT_EQ(std::ranges::adjacent_find(numbers), numbers.end()) << "a point is drawn twice";
+        if (numbers.back() < kFar || std::exchange(told, true)) return;
+        // All points of the sketch, and one of ten of those that have been read.
+        const auto far = std::ranges::count_if(numbers, [&](uint64_t number) { return number >= kFar; });
+        EXPECT_LE(far, 21'000);
+        EXPECT_GE(std::ranges::count_if(numbers, [&](uint64_t number) { return number < 20'000; }), 5'000);
+        seen.set_value();
+    });
+    (*build)->wait();
+    EXPECT_TRUE(told);
+    EXPECT_TRUE((*build)->state().finished);
 }
 
 TEST(GrowingBuild, IsStoppedWhileItsSampleGrows) {

@@ -2,11 +2,18 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
 namespace lucarne::octree {
 namespace {
+
+std::vector<uint64_t> numbers_of(std::span<const std::byte> records) {
+    std::vector<uint64_t> numbers(records.size() / sizeof(uint64_t));
+    if (!numbers.empty()) std::memcpy(numbers.data(), records.data(), records.size());
+    return numbers;
+}
 
 /// Returns the numbers that are kept of 0, 1, ... count - 1, added in batches.
 std::vector<uint64_t> kept_of(uint64_t count, uint64_t most, uint64_t expected, size_t batch = 1000) {
@@ -18,10 +25,7 @@ std::vector<uint64_t> kept_of(uint64_t count, uint64_t most, uint64_t expected, 
         sample.add(std::as_bytes(std::span(numbers)));
         numbers.clear();
     }
-    const auto records = sample.take();
-    std::vector<uint64_t> kept(records.size() / sizeof(uint64_t));
-    if (!kept.empty()) std::memcpy(kept.data(), records.data(), records.size());
-    return kept;
+    return numbers_of(sample.take());
 }
 
 TEST(PassSample, KeepsAllPointsThatFit) {
@@ -44,6 +48,24 @@ TEST(PassSample, KeepsAnEvenShareOfMorePointsWhateverWasExpected) {
         size_t front = 0;
         for (const uint64_t number : kept) front += number < 150'000;
         EXPECT_NEAR(static_cast<double>(front) / static_cast<double>(kept.size()), 0.5, 0.03) << expected;
+    }
+}
+
+TEST(PassSample, ShowsAShareOfWhatHasComeBeforeAllHasCome) {
+    for (const uint64_t expected : {uint64_t{100'000}, uint64_t{0}}) {
+        PassSample sample(sizeof(uint64_t), 50'000, expected);
+        EXPECT_TRUE(sample.some(10'000).empty());
+        std::vector<uint64_t> numbers(25'000), last;
+        for (uint64_t quarter = 1; quarter <= 4; ++quarter) {
+            std::iota(numbers.begin(), numbers.end(), (quarter - 1) * numbers.size());
+            sample.add(std::as_bytes(std::span(numbers)));
+            const auto some = numbers_of(sample.some(10'000));
+            EXPECT_NEAR(static_cast<double>(some.size()), expected ? 2'500.0 * double(quarter) : 10'000, 400);
+            EXPECT_TRUE(std::ranges::is_sorted(some));
+            EXPECT_TRUE(expected == 0 || std::ranges::includes(some, last)) << "points come and go";
+            last = some;
+        }
+        EXPECT_GE(numbers_of(sample.some(1'000'000)).size(), 25'000u) << "never more than are kept";
     }
 }
 
