@@ -173,14 +173,22 @@ std::string fit_text(const FrameStats& stats) {
     return share < 1 ? fmt::format("; {:.0f} % of the cuts' points fit the caps", 100 * share) : "";
 }
 
+struct Opened {
+    std::shared_ptr<const octree::NodeSource> source;
+    bool sample = false;  ///< not all points
+};
+
 /// Opens the input. With --first opens only what can be drawn at once.
-Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOptions& options) {
-    if (!options.first) return open_input(options.input);
+Result<Opened> open_source(const RenderOptions& options) {
+    if (!options.first) {
+        LUCARNE_ASSIGN(auto source, open_input(options.input));
+        return Opened{std::move(source)};
+    }
     Opening opening;
     opening.first_points = 200'000;
     opening.first_read = 1'000'000;
     LUCARNE_ASSIGN(const auto open, open_growing(options.input, opening));
-    return open.source;
+    return Opened{open.source, open.build != nullptr};
 }
 
 Result<void> render(RenderOptions options) {
@@ -193,7 +201,8 @@ Result<void> render(RenderOptions options) {
     if (options.layers) LUCARNE_TRY(check_layers(options));
     auto opening = std::async(std::launch::async, [&] { return open_source(options); });
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());  // starts while the input is checked
-    LUCARNE_ASSIGN(const auto source, opening.get());
+    LUCARNE_ASSIGN(const Opened opened, opening.get());
+    const auto& source = opened.source;
     LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, *source));
     options.drawing.render.engine = loaded.engine;
     FrameRequest request;
@@ -204,6 +213,7 @@ Result<void> render(RenderOptions options) {
     request.accumulate = options.frames > 1 || options.seconds > 0;
     request.transparent = options.finish.transparent;
     request.antialiased = !options.aliased;
+    if (opened.sample) request.most_pixels = kSketchDots;
 
     LUCARNE_ASSIGN(const auto pipeline,
                    open_pipeline(*device, source, options.drawing, drawing, loaded.scene));

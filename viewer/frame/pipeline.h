@@ -38,6 +38,9 @@ struct MemoryUse {
     uint64_t resident = 0;  ///< of the process, by the kernel; with a software driver includes `device`
 };
 
+/// Most pixels of a point while more of them are to come (FrameRequest::most_pixels).
+inline constexpr float kSketchDots = 4;
+
 struct FrameRequest {
     gi::SceneCamera camera;
     ImageSize size{1280, 720};

@@ -176,6 +176,14 @@ Site survey_site(const octree::NodeSource& source) {
     return site;
 }
 
+bool shown_alike(const Site& a, const Site& b) {
+    if (a.kind != SiteKind::interior || b.kind != SiteKind::interior || !a.inside || !b.inside) return true;
+    constexpr double kTurned = .7, kMoved = .25;  // cosine; share of the free distance ahead
+    const double moved = glm::distance(a.inside->eye, b.inside->eye);
+    return dot(a.inside->ahead, b.inside->ahead) >= kTurned &&
+           moved <= kMoved * std::min(a.inside->free_ahead, b.inside->free_ahead);
+}
+
 bool alike(const Site& a, const Site& b) {
     constexpr double kSame = .05;  // of the diagonal
     const double size = std::max(glm::distance(a.box[0], a.box[1]), glm::distance(b.box[0], b.box[1]));

@@ -73,4 +73,8 @@ Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3
 /// the other.
 bool alike(const Site& a, const Site& b);
 
+/// Returns whether the views from inside two sites (if both are seen from there) are about the same: the
+/// directions differ by less than 45 degrees and the places by less than a quarter of the way ahead.
+bool shown_alike(const Site& a, const Site& b);
+
 }  // namespace lucarne::viewer

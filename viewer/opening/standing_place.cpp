@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "io/core/parallel.h"
 
@@ -35,14 +38,20 @@ constexpr double kLeastOpen = .05;
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
 constexpr size_t kPlacesPerTask = 64;
 constexpr int kAzimuths = 24;
-constexpr double kWalled = .8;  ///< share of blocked directions from which a place is in a room
+constexpr size_t kViews = 16;          ///< that are compared
+constexpr double kBetweenViews = 1.5;  ///< distance between their places, at least
+constexpr double kWorthAView = .5;     ///< share of the best score
+constexpr double kStepBack = .2;
+constexpr double kNearlyAsGood = .85;     ///< share of the most space ahead
+constexpr glm::dvec2 kPreferred{.8, .6};  ///< along no wall of most rooms
+constexpr double kWalled = .8;            ///< share of blocked directions from which a place is in a room
 constexpr size_t kMostLamps = 3;
 
 glm::dvec3 direction(double azimuth, double elevation) {
     return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
             std::sin(elevation)};
 }
-double azimuth_of(int i) {
+double azimuth_of(double i) {
     return 2 * std::numbers::pi * i / kAzimuths;
 }
 
@@ -104,25 +113,12 @@ double roominess(const OccupancyGrid& grid, const glm::dvec3& eye, double metre)
     return area * nearest;
 }
 
-/// Returns the horizontal direction in which a picture shows the most space.
-glm::dvec3 along_the_room(const OccupancyGrid& grid, const glm::dvec3& eye) {
-    std::array<double, kAzimuths> free{};
-    for (int i = 0; i < kAzimuths; ++i) free[i] = grid.look(eye, direction(azimuth_of(i), 0)).distance;
-    int best = 0;
-    double most = -1;
-    for (int i = 0; i < kAzimuths; ++i) {
-        double sum = free[i];  // the middle counts twice
-        for (int beside = -2; beside <= 2; ++beside) sum += free[(i + beside + kAzimuths) % kAzimuths];
-        if (sum > most) best = i, most = sum;
-    }
-    return direction(azimuth_of(best), 0);
-}
-
 /// Steps back as far as the room allows.
 glm::dvec3 step_back(const OccupancyGrid& grid, const glm::dvec3& eye, const glm::dvec3& ahead,
                      double metre) {
     const glm::dvec3 aside(-ahead.y, ahead.x, 0);
-    const double room = std::max(kElbowRoom * metre, grid.cell()), step = grid.cell() / 2;
+    const double room = std::max(kElbowRoom * metre, grid.cell()),
+                 step = std::max(grid.cell() / 2, kStepBack * metre);
     glm::dvec3 at = eye;
     for (double left = grid.look(eye, -ahead).distance - room; left > step; left -= step) {
         const glm::dvec3 next = at - ahead * step;
@@ -131,6 +127,65 @@ glm::dvec3 step_back(const OccupancyGrid& grid, const glm::dvec3& eye, const glm
         at = next;
     }
     return at;
+}
+
+double preference(const glm::dvec3& v) {
+    return v.x * kPreferred.x + v.y * kPreferred.y;
+}
+
+/// A view of a room.
+struct RoomView {
+    glm::dvec3 eye{0.0}, ahead{0.0};
+    double space = 0;  ///< that a picture shows, as a length
+};
+
+/// Finds where to stand near a place and the horizontal direction in which a picture from there shows the
+/// most space. Most rooms are as long one way as the other: of directions that are nearly as good, one is
+/// chosen that more or other points do not change.
+RoomView look_along_the_room(const OccupancyGrid& grid, const glm::dvec3& near, double metre) {
+    std::array<glm::dvec3, kAzimuths> eyes;
+    std::array<double, kAzimuths> space{};
+    for (int i = 0; i < kAzimuths; ++i) {
+        eyes[i] = step_back(grid, near, direction(azimuth_of(i), 0), metre);
+        // Square roots, so that a column in front outweighs the length of what is beside it.
+        for (double beside = -2; beside <= 2; beside += .5)
+            space[i] += std::sqrt(grid.look(eyes[i], direction(azimuth_of(i + beside), 0)).distance);
+        // A wall beside the eye fills a side of the picture.
+        const glm::dvec3 aside = direction(azimuth_of(i) + std::numbers::pi / 2, 0);
+        const double narrow =
+            std::min(grid.look(eyes[i], aside).distance, grid.look(eyes[i], -aside).distance);
+        space[i] *= std::pow(std::min(narrow, kWideEnough * metre), .25);
+    }
+    const double most = *std::ranges::max_element(space);
+    const auto best_near = [&](int i) {
+        for (int beside = -3; beside <= 3; ++beside)
+            if (space[(i + beside + kAzimuths) % kAzimuths] > space[i]) return false;
+        return true;
+    };
+    RoomView best;
+    for (int i = 0; i < kAzimuths; ++i) {
+        const glm::dvec3 ahead = direction(azimuth_of(i), 0);
+        const bool good = space[i] >= kNearlyAsGood * most && best_near(i);
+        if (good && (best.space == 0 || preference(ahead) > preference(best.ahead)))
+            best = {eyes[i], ahead, space[i]};
+    }
+    return best;
+}
+
+/// Returns the numbers of the places with the best scores, best first; none is near another.
+std::vector<size_t> best_places(const std::vector<Place>& places, const std::vector<double>& score,
+                                double metre) {
+    std::vector<size_t> order(places.size()), best;
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](size_t i) { return score[i]; });
+    for (const size_t i : order) {
+        if (best.size() == kViews || score[i] < kWorthAView * score[order.front()]) break;
+        if (std::ranges::none_of(best, [&](size_t j) {
+                return glm::distance(places[i].eye, places[j].eye) < kBetweenViews * metre;
+            }))
+            best.push_back(i);
+    }
+    return best;
 }
 
 /// Returns for each place the number of places on a floor of the same height.
@@ -250,20 +305,26 @@ Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) 
         if (scores[i]) in_rooms.push_back(places[i]), roominess_of.push_back(*scores[i]);
     // From the top of a cupboard one sees more of a room, but people stand on floors, which are larger.
     const std::vector<size_t> floor = sizes_of_floors(in_rooms, metre);
-    double most = 0;
-    const Place* best = nullptr;
-    for (size_t i = 0; i < in_rooms.size(); ++i) {
-        const double score = roominess_of[i] * static_cast<double>(floor[i]);
-        if (score > most) most = score, best = &in_rooms[i];
-    }
-    if (!best) return found;
+    std::vector<double> score;
+    for (size_t i = 0; i < in_rooms.size(); ++i)
+        score.push_back(roominess_of[i] * static_cast<double>(floor[i]));
+    // Of the roomiest places, the one with the widest view: no column stands before it.
+    const std::vector<size_t> best = best_places(in_rooms, score, metre);
+    if (best.empty()) return found;
+    std::vector<RoomView> views(best.size());
+    parallel_ranges(best.size(), 1, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            views[i] = look_along_the_room(grid, in_rooms[best[i]].eye, metre);
+    });
+    const auto widest = std::ranges::max_element(views, {}, &RoomView::space);
+    const Place& under = in_rooms[best[static_cast<size_t>(widest - views.begin())]];
     found.enclosed_share = static_cast<double>(in_rooms.size()) / static_cast<double>(places.size());
     StandingPlace place;
-    place.ahead = along_the_room(grid, best->eye);
-    place.eye = step_back(grid, best->eye, place.ahead, metre);
+    place.eye = widest->eye;
+    place.ahead = widest->ahead;
     place.free_ahead = grid.look(place.eye, place.ahead).distance;
-    place.floor = best->floor;
-    place.ceiling = best->ceiling;
+    place.floor = under.floor;
+    place.ceiling = under.ceiling;
     place.lamps = places_of_lamps(grid, place, metre);
     place.left_wall = along_left_wall(grid, place, metre);
     place.sunward = sunward_of(grid, place, metre);

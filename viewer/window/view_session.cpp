@@ -31,7 +31,6 @@ constexpr double kSharp = 0.1;       ///< s without motion until the picture is 
 constexpr double kRest = 0.25;       ///< and at full quality
 constexpr double kStep = 1.0 / 60;   ///< s between the window's frames while something moves
 constexpr double kInFront = 1.2;     ///< m: how near the camera goes to what was clicked twice
-constexpr float kSketchDots = 4;     ///< most pixels of a point while more of them are to come
 constexpr uint32_t kIdleFrames = 4;  ///< frames until ImGui's windows have their final sizes
 
 double axis(int less, int more) {
@@ -165,7 +164,8 @@ void ViewSession::take_extent() {
     const bool sure = start->site.sure || scans_.settled();
     const bool station_found = sure && start->site.station && !placed_for_.station;
     const bool follows =
-        first || others || station_found || (sure && !sure_ && !alike(placed_for_, start->site));
+        first || others || station_found ||
+        (sure && !sure_ && !(alike(placed_for_, start->site) && shown_alike(placed_for_, start->site)));
     sure_ = sure || (sure_ && !others);
     model_.view.scene_size = start->scene_size();
     model_.view.box = start->box;

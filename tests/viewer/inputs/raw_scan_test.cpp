@@ -3,7 +3,9 @@
 #include <sys/stat.h>
 
 #include "gi/device/gl/device.h"
+#include "io/image/image.h"
 #include "tests/viewer/program.h"
+#include "tests/viewer/window/picture_difference.h"
 #include "viewer/frame/pipeline.h"
 #include "viewer/inputs/input.h"
 #include "viewer/inputs/kept_cache.h"
@@ -85,6 +87,17 @@ TEST_F(RawScan, TheFirstPictureConvertsNothing) {
     EXPECT_EQ(outcome.code, 0) << outcome.output;
     EXPECT_THAT(outcome.output, HasSubstr("first picture after"));
     EXPECT_EQ(files(), before + 1);
+}
+
+TEST_F(RawScan, TheFirstPictureShowsPointsAndNoLargeDiscs) {
+    const std::string first = folder_ / "first.png", few = folder_ / "few.las",
+                      render_few = "render " + few + " --engine unlit --size 480x360 ";
+    ASSERT_EQ(lucarne("generate cornell --points 2000 -o " + few).code, 0);
+    ASSERT_EQ(lucarne(render_few + "--first -o " + first).code, 0);
+    ASSERT_EQ(lucarne(render_few + "-o " + picture_).code, 0);
+    const auto dots = io::read_png(first), discs = io::read_png(picture_);
+    ASSERT_TRUE(dots && discs);
+    EXPECT_GT(test::difference(*dots, *discs), 5);
 }
 
 TEST_F(RawScan, OneBrokenFileAmongSeveralDoesNotStopTheFirstPicture) {

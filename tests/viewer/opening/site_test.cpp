@@ -91,6 +91,30 @@ TEST(Site, ARoomIsSeenFromWithinAlongItsLength) {
     }
 }
 
+TEST(Site, OfTwoEndsOfARoomOneIsSeenInEverySample) {
+    const dvec3 ahead = room().inside->ahead;
+    for (uint32_t seed = 2; seed < 10; ++seed) {
+        std::vector<dvec3> points;
+        add_faces(points, kRoom, 20000 * seed, true, seed);
+        const Site site = survey_site(points, kRoom, 1);
+        ASSERT_TRUE(site.inside) << seed;
+        EXPECT_GT(dot(site.inside->ahead, ahead), .9) << seed;
+        EXPECT_TRUE(shown_alike(site, room())) << seed;
+    }
+}
+
+TEST(Site, ViewsFromOtherEndsOrPlacesAreNotAlike) {
+    const Site one = room();
+    Site turned = one, moved = one;
+    turned.inside->ahead = -one.inside->ahead;
+    moved.inside->eye += one.inside->free_ahead / 2 * one.inside->ahead;
+    EXPECT_FALSE(shown_alike(one, turned));
+    EXPECT_FALSE(shown_alike(one, moved));
+    EXPECT_TRUE(alike(one, turned)) << "light made for one suits the other";
+    turned.kind = SiteKind::object;
+    EXPECT_TRUE(shown_alike(one, turned)) << "one is seen from outside";
+}
+
 /// A wide bench along half of the room, as high as a person's chest, under a cable tray.
 TEST(Site, OneStandsOnTheFloorNotOnFurniture) {
     std::vector<dvec3> points;
@@ -291,8 +315,9 @@ TEST(Site, ARoomIsKnownFromSomePlacesOfItsWalls) {
         << "the same points without a word of gaps: the walls are open";
 }
 
-/// Two rooms of real scans as the window opens them: what their first 60 000 points show.
-TEST(Site, RealRoomsAreKnownFromTheFirstPointsOfACompressedFile) {
+/// Two rooms of real scans as the window opens them: their first 60 000 points, the first even sample, and
+/// the cache.
+TEST(Site, RealRoomsAreKnownFromTheFirstPointsOfACompressedFileAndKeepTheViewOfTheFirstEvenSample) {
     const auto data = io::testing::shared_data();
     for (const char* name : {"loft.laz", "vault.laz"}) {
         if (data.empty() || !std::filesystem::exists(data / "interiors" / name))
@@ -307,6 +332,8 @@ TEST(Site, RealRoomsAreKnownFromTheFirstPointsOfACompressedFile) {
         options.sample_points = 400'000;
         options.first_points = 60'000;
         options.first_read = 500'000;
+        options.read_points = 1'000'000;
+        options.build.normals = octree::NormalsMode::none;  // saves time
         const auto build = octree::GrowingBuild::open(std::move(inputs), options);
         ASSERT_TRUE(build) << build.error().line();
         const auto source = (*build)->state().source;
@@ -314,6 +341,16 @@ TEST(Site, RealRoomsAreKnownFromTheFirstPointsOfACompressedFile) {
         const Site site = survey_site(*source);
         EXPECT_EQ(site.kind, SiteKind::interior) << name << ": " << site.enclosed_share;
         EXPECT_FALSE(site.sure) << "the even points that follow may show something else";
+        std::shared_ptr<const octree::NodeSource> even;
+        (*build)->begin([&] {
+            const auto now = (*build)->state().source;
+            if (!even && !now->header().has_gaps) even = now;
+        });
+        (*build)->wait();
+        ASSERT_TRUE((*build)->state().finished && even);
+        const Site first = survey_site(*even), whole = survey_site(*(*build)->state().source);
+        EXPECT_TRUE(first.sure && whole.sure) << name;
+        EXPECT_TRUE(alike(first, whole) && shown_alike(first, whole)) << name;
     }
 }
 
