@@ -34,6 +34,11 @@ std::shared_ptr<Said>& said_by_thread() {
     return said;
 }
 
+bool& hushed() {
+    thread_local bool hushed = false;
+    return hushed;
+}
+
 spdlog::logger& logger() {
     static const auto instance = [] {
         auto made = std::make_shared<spdlog::logger>("lucarne",
@@ -52,6 +57,7 @@ void info(std::string_view text) {
     logger().info("{}", shown(text, kMostBytes));
 }
 void warn(std::string_view text) {
+    if (hushed()) return;
     const std::string line = shown(text, kMostBytes);
     const auto& said = said_by_thread();
     if (!said || said->is_new(line)) logger().warn("{}", line);
@@ -61,6 +67,11 @@ void set_quiet(bool quiet) {
 }
 void set_silent(bool silent) {
     logger().set_level(silent ? spdlog::level::off : spdlog::level::info);
+}
+
+Hush::Hush() : before_(std::exchange(hushed(), true)) {}
+Hush::~Hush() {
+    hushed() = before_;
 }
 
 Operation::Operation() : said_(std::make_shared<Said>()) {}

@@ -408,7 +408,10 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     auto report = build(options, held);
     if (options.ranks)
         LUCARNE_TRY(options.ranks->conclude(report ? Result<void>() : tl::make_unexpected(report.error())));
-    if (report) held.work->done();
+    if (!report) return report;
+    held.work->end();
+    if (options.ranks) LUCARNE_TRY(meet(*options.ranks));
+    held.work->done();
     return report;
 }
 

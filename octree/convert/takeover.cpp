@@ -35,6 +35,7 @@ struct Part {
 /// What others are told of it.
 struct Offer {
     uint64_t rank = 0, count = 0;
+    uint64_t ended = 0;           ///< 1: it was noted that its cache is complete
     uint64_t sound = 0;           ///< 1: has finished chunks; what follows is about them
     uint64_t first = 0, end = 0;  ///< its chunks
     uint64_t normals = 0;         ///< 1: has them
@@ -72,6 +73,7 @@ struct Build {
     std::vector<Offer> offers;
     std::vector<bool> found;  ///< there is a part, sound or not
     bool normals = true;
+    bool ended = false;  ///< its cache was complete, and parts may have been removed
 
     explicit Build(uint64_t count) : holders(count, kNowhere), offers(count), found(count) {}
     /// Returns the ranks that have no sound part.
@@ -97,15 +99,15 @@ Result<std::map<uint64_t, Build>> compare(Ranks& ranks, const Workspace& work,
                                           const std::vector<Part>& parts) {
     ByteWriter writer;
     const auto found = [&](const Workspace& known) {
-        Offer offer{.rank = known.part().rank, .count = known.part().count};
+        Offer offer{.rank = known.part().rank, .count = known.part().count, .ended = known.ended() ? 1u : 0u};
         if (known.finished("scan")) writer.put(offer);
     };
     found(work);
     for (const Workspace& other : left) found(other);
     for (const Part& part : parts) {
         const auto [rank, count] = part.work->part();
-        writer.put(Offer{rank, count, 1, part.chunks.own().first, part.chunks.own().end,
-                         part.surface ? uint64_t{1} : 0});
+        writer.put(Offer{rank, count, part.work->ended() ? 1u : 0u, 1, part.chunks.own().first,
+                         part.chunks.own().end, part.surface ? uint64_t{1} : 0});
     }
     LUCARNE_ASSIGN(const auto all, share(ranks, writer.take()));
     std::map<uint64_t, Build> builds;
@@ -114,6 +116,7 @@ Result<std::map<uint64_t, Build>> compare(Ranks& ranks, const Workspace& work,
             const auto offer = reader.get<Offer>();
             Build& build = builds.try_emplace(offer.count, offer.count).first->second;
             build.found[offer.rank] = true;
+            if (offer.ended != 0) build.ended = true;
             if (offer.sound == 0) continue;
             // A kill while parts were moved may leave two of one rank; that with normals has come farther.
             if (build.holders[offer.rank] != kNowhere && offer.normals <= build.offers[offer.rank].normals)
@@ -150,7 +153,8 @@ std::string why_not(const std::map<uint64_t, Build>& builds) {
 /// Errors: a build has finished chunks, and the parts of some ranks are on no machine that takes part.
 Result<void> check_present(const std::map<uint64_t, Build>& builds) {
     for (const auto& [count, build] : builds)
-        if (const auto missing = build.missing(); !missing.empty() && build.unsound().size() < count)
+        if (const auto missing = build.missing();
+            !build.ended && !missing.empty() && build.unsound().size() < count)
             return failed("--resume",
                           fmt::format("of the interrupted conversion by {}, the work folder of rank {} is on "
                                       "no machine that takes part, or its journal is damaged",
@@ -222,6 +226,7 @@ Result<void> take_over(Workspace& work, std::vector<Workspace>& left, Ranks& ran
     if (seen[0] + seen[1] > 0 && seen[2] < ranks.count())
         return failed("--resume", "a rank cannot use its work folder",
                       "mend what that rank reports, or leave --resume out to begin anew");
+    bool anew = false;
     // These ranks have chunks of their own, and there is nothing that may have come farther.
     const bool further = seen[1] == ranks.count() && seen[0] == 0;
     if (!further && seen[0] + seen[1] > 0) {
@@ -245,15 +250,22 @@ Result<void> take_over(Workspace& work, std::vector<Workspace>& left, Ranks& ran
             LUCARNE_TRY(move(work, ranks, *build, parts, inputs, options, memory));
         } else {
             LUCARNE_TRY(check_present(builds));
-            if (ranks.rank() == 0 && seen[0] > 0)
+            const auto own_build = builds.find(ranks.count());
+            anew = own_build != builds.end() && own_build->second.ended;
+            const bool ended = !builds.empty() &&
+                               std::ranges::all_of(builds, [](const auto& of) { return of.second.ended; });
+            if (ranks.rank() == 0 && seen[0] > 0 && !ended)
                 log::warn("the interrupted conversion cannot go on, starting from the beginning: {}",
                           why_not(builds));
         }
     }
     LUCARNE_TRY(meet(ranks));
+    // What is left was taken over, or cannot be.
+    for (Workspace& other : left) other.end();
+    LUCARNE_TRY(meet(ranks));
     for (Workspace& other : left) other.done();
     left.clear();
-    return {};
+    return anew ? work.begin_anew() : work.reopen();
 }
 
 }  // namespace lucarne::octree

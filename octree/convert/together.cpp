@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "io/core/log_silence.h"
 #include "io/core/machine.h"
 #include "octree/cache/format.h"
 #include "octree/cache/metadata.h"
@@ -33,8 +34,11 @@ InputRange inputs_of_rank(const Unifier& inputs, const Ranks& ranks) {
 Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const MemoryPlan& memory, Ranks& ranks,
                                 const Visit& seen, std::optional<CountGrid>& counted) {
     EarlyCount early(inputs, memory.grid_bytes);
-    LUCARNE_ASSIGN(ScanFacts found,
-                   scan_range(inputs, own, memory.batch_bytes, kMostEstimatedStations, &early, seen));
+    const auto scan_own = [&] {
+        const log::Speaking about_own_inputs(ranks.rank() > 0);
+        return scan_range(inputs, own, memory.batch_bytes, kMostEstimatedStations, &early, seen);
+    };
+    LUCARNE_ASSIGN(ScanFacts found, scan_own());
     std::vector<uint64_t> stations(ranks.count(), 0);
     stations[ranks.rank()] = found.stations.size();
     LUCARNE_TRY(ranks.sum(stations));

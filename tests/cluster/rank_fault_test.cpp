@@ -1,8 +1,10 @@
 // What goes wrong on one rank ends all of them with a clear error, and nothing half-written stays.
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -59,6 +61,38 @@ TEST_F(RankFaults, ABrokenInputIsSkippedAsByOneProcess) {
     EXPECT_EQ(one.code, 3) << one.output;
     EXPECT_EQ(several.code, 3) << several.output;
     EXPECT_TRUE(test::bytes_of(folder_ / "one.luc") == test::bytes_of(output()));
+}
+
+TEST_F(RankFaults, WarningsAboutInputsAreThoseOfOneProcess) {
+    // Some are about headers, which other ranks read than the points.
+    std::string odd;
+    std::vector<std::string> warnings;
+    for (const char* name : {"a.ply", "b.ply", "c.ply", "d.ply", "e.ply"}) {
+        std::ofstream(folder_ / name) << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                                         "property float y\nend_header\n0 0\n1 0\n0 1\n1 1\n";
+        odd += folder_ / name + " ";
+        warnings.push_back(folder_ / name + ": its vertices have no z");
+    }
+    for (const char* name : {"f.las", "g.las", "h.las"}) {  // they state boxes of 1 mm
+        std::string bytes = test::bytes_of(folder_ / "cornell.las");
+        for (const size_t high : {179, 195, 211}) {
+            double low = 0;
+            std::memcpy(&low, &bytes[high + sizeof low], sizeof low);
+            const double just_above = low + .001;
+            std::memcpy(&bytes[high], &just_above, sizeof just_above);
+        }
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        odd += folder_ / name + " ";
+        warnings.push_back(folder_ / name + ": has points far outside the bounds");
+    }
+    const std::string what = "convert " + odd + kSmall;
+    const Outcome one = lucarne(what + folder_ / "one.luc"), several = on_ranks(3, what + output());
+    ASSERT_EQ(one.code, 0) << one.output;
+    ASSERT_EQ(several.code, 0) << several.output;
+    for (const std::string& warning : warnings) {
+        EXPECT_EQ(times(one.output, warning), 1u) << one.output;
+        EXPECT_EQ(times(several.output, warning), 1u) << several.output;
+    }
 }
 
 TEST_F(RankFaults, AnInputThatChangesWhileItIsReadIsTheErrorOfAll) {

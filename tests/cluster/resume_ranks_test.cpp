@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/cluster/rank_faults.h"
@@ -31,19 +32,24 @@ class ResumedRanks : public test::RankFaults {
         ASSERT_EQ(one.code, 0) << one.output;
         expected_ = test::bytes_of(folder_ / "one.luc");
     }
+    /// Returns what rank 1 of several does to files, or the only one.
+    std::vector<std::string> calls(int count) {
+        const std::string trace = folder_ / ("trace" + std::to_string(count));
+        if (!fs::exists(trace)) {
+            const Outcome traced = with_fault(count > 1 ? 1 : 0, "trace:" + trace, "", count);
+            EXPECT_EQ(traced.code, 0) << traced.output;
+            fs::remove(output());
+        }
+        std::vector<std::string> names;
+        std::ifstream lines(trace);
+        for (std::string name; std::getline(lines, name);) names.push_back(name);
+        return names;
+    }
     /// Kills rank 1 of three, or the only one, in the last stage: a rank syncs the cache when it has written
     /// its payloads, which it builds in the last stage.
     void interrupt(int count = 3) {
-        const std::string trace = folder_ / ("trace" + std::to_string(count));
         const int rank = count > 1 ? 1 : 0;
-        if (!fs::exists(trace)) {
-            const Outcome traced = with_fault(rank, "trace:" + trace, "", count);
-            ASSERT_EQ(traced.code, 0) << traced.output;
-            fs::remove(output());
-        }
-        std::ifstream lines(trace);
-        int syncs = 0;
-        for (std::string name; std::getline(lines, name);) syncs += name == "fsync";
+        auto syncs = std::ranges::count(calls(count), "fsync");
         if (count == 1) syncs = 1;  // it syncs the folder as well, when the cache has its name
         ASSERT_GT(syncs, 0);
         const Outcome killed = with_fault(rank, "kill-sync:" + std::to_string(syncs), "", count);
@@ -67,12 +73,17 @@ class ResumedRanks : public test::RankFaults {
                 << resumed.output;
         fs::remove(output());
     }
-    /// The work folders that a conversion has left, each with its points, in the order of ranks.
-    std::vector<fs::path> left() const {
+    /// The folders in --temp, in the order of ranks.
+    std::vector<fs::path> folders() const {
         std::vector<fs::path> found;
-        for (const auto& entry : fs::directory_iterator(folder_ / "temp"))
-            if (fs::exists(entry.path() / "points")) found.push_back(entry.path());
+        for (const auto& entry : fs::directory_iterator(folder_ / "temp")) found.push_back(entry.path());
         std::ranges::sort(found);
+        return found;
+    }
+    /// The work folders that a conversion has left, each with its points.
+    std::vector<fs::path> left() const {
+        std::vector<fs::path> found = folders();
+        std::erase_if(found, [](const fs::path& folder) { return !fs::exists(folder / "points"); });
         return found;
     }
     std::string expected_;
@@ -107,6 +118,26 @@ TEST_F(ResumedRanks, GoOnAgainWhenTheyAreKilledWhileTheyTakeOver) {
         interrupt();
         EXPECT_NE(with_fault(1, "kill:" + std::to_string(at), "--resume", 2).code, 0);
         expect_resumed(resume(at == calls / 4 ? 2 : 4), "going on after");
+    }
+}
+
+TEST_F(ResumedRanks, AreNotMissedIfTheyWereKilledWhileTheyRemovedTheirFolders) {
+    std::vector<std::string> ending = calls(3);
+    const auto syncs = std::ranges::count(ending, "fsync");
+    ending.erase(ending.begin(), std::find(ending.rbegin(), ending.rend(), "fsync").base());
+    const auto first_removal = std::ranges::find(ending, "unlinkat") - ending.begin();
+    ASSERT_GT(first_removal, 0);
+    ASSERT_LT(first_removal + 1, std::ssize(ending));
+    for (const ptrdiff_t at : {ptrdiff_t{0}, first_removal, first_removal + 1}) {
+        const Outcome killed = with_fault(1, fmt::format("kill-sync:{}:{}", syncs, at + 1), "--overwrite");
+        ASSERT_NE(killed.code, 0) << killed.output;
+        // When a rank removes its files, the others may have finished with theirs.
+        const std::string own = ".1-of-3.";
+        for (const fs::path& folder : folders())
+            if (at >= first_removal && folder.string().find(own) == std::string::npos) fs::remove_all(folder);
+        const Outcome resumed = on_ranks(at % 2 == 0 ? 3 : 2, convert() + " --resume --overwrite");
+        expect_resumed(resumed, "");
+        EXPECT_EQ(resumed.output.find("damaged"), std::string::npos) << resumed.output;
     }
 }
 

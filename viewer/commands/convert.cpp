@@ -12,6 +12,7 @@
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
+#include "io/core/log_silence.h"
 #include "io/core/options.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
@@ -54,13 +55,18 @@ class ClosedScan final : public io::PointSource {
     const io::Schema& schema() const override { return schema_; }
     const io::ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<io::PointReader>> open() const override {
-        LUCARNE_ASSIGN(auto scan, io::open_scan(path_, options_));
-        if (scan->schema() != schema_) return rejected(path_, "changed while it was read");
-        LUCARNE_ASSIGN(auto reader, scan->open());
-        return std::make_unique<Reader>(std::move(scan), std::move(reader));
+        auto scan = reopened();
+        if (!scan) return tl::make_unexpected(scan.error());
+        if ((*scan)->schema() != schema_) return rejected(path_, "changed while it was read");
+        LUCARNE_ASSIGN(auto reader, (*scan)->open());
+        return std::make_unique<Reader>(*std::move(scan), std::move(reader));
     }
 
  private:
+    Result<std::unique_ptr<io::PointSource>> reopened() const {
+        const log::Hush said_before;  // by the rank that read the header
+        return io::open_scan(path_, options_);
+    }
     class Reader final : public io::PointReader {
      public:
         Reader(std::unique_ptr<io::PointSource> scan, std::unique_ptr<io::PointReader> reader)

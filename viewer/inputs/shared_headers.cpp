@@ -48,26 +48,10 @@ Bytes written(const ScanHeader& header) {
     return writer.take();
 }
 
-/// Lets the messages of this rank be seen for a while, although rank 0 speaks for all elsewhere.
-class Speaking {
- public:
-    explicit Speaking(const octree::Ranks& ranks) : silent_(ranks.rank() > 0) {
-        if (silent_) log::set_silent(false);
-    }
-    ~Speaking() {
-        if (silent_) log::set_silent(true);
-    }
-    Speaking(const Speaking&) = delete;
-    Speaking& operator=(const Speaking&) = delete;
-
- private:
-    bool silent_;
-};
-
 /// What this rank tells of its share of the files.
 Bytes tell(const std::vector<std::string>& paths, const io::ReadOptions& options,
            const octree::Ranks& ranks) {
-    const Speaking speaking(ranks);
+    const log::Speaking speaking(ranks.rank() > 0);
     ByteWriter writer;
     const size_t first = paths.size() * ranks.rank() / ranks.count(),
                  end = paths.size() * (ranks.rank() + 1) / ranks.count();
@@ -128,8 +112,10 @@ Result<std::vector<Result<ScanHeader>>> read_headers_together(const std::vector<
                 headers.push_back(decode_header(bytes));
             else if (told == Told::error)
                 headers.push_back(tl::make_unexpected(octree::decode_error(bytes)));
-            else
+            else {
+                const log::Hush said_by_its_rank;
                 headers.push_back(read_header(paths[headers.size()], options));
+            }
         }
     if (headers.size() != paths.size()) return failed("headers", "have come incomplete from another rank");
     return headers;

@@ -174,14 +174,19 @@ Result<std::vector<Workspace>> Workspace::left_by_others(std::span<const std::st
         if (!owner || records->size() < 2) continue;  // its destructor removes it
         other.part_ = owner->part;
         other.records_ = std::move(*records);
+        other.end_ = other.records_.back().end();
         other.resume_ = resume_;
         other.keep_ = resume_ == Resume::go_on;
         if (!other.keep_) {
-            removed_ += folder_bytes(folder);
+            if (!other.ended()) removed_ += folder_bytes(folder);
             continue;
         }
         const std::string now = text_of(output_, owner->part, identity_);
-        if (text != now) return another_build(folder, difference(text, now));
+        if (text != now) {
+            if (!other.ended()) return another_build(folder, difference(text, now));
+            other.done();
+            continue;
+        }
         left.push_back(std::move(other));
     }
     return left;
@@ -204,6 +209,7 @@ Result<Workspace> Workspace::set_aside() {
     before.part_ = part_;
     before.journal_.swap(journal_);
     before.records_.swap(records_);
+    std::swap(before.end_, end_);
     before.resume_ = resume_;
     before.keep_ = keep_;
     LUCARNE_TRY(make_private_folder(folder_));
@@ -237,6 +243,12 @@ Workspace::~Workspace() {
 
 /// Registers what an interrupt does: keeps the folder if a resumed build can use it, else removes it.
 void Workspace::tell_at_interrupt() const {
+    if (ended()) {  // the others may not have noted it yet
+        at_interrupt(folder_, [folder = folder_] {
+            return fmt::format("{}: the next conversion to the same cache removes it", folder.string());
+        });
+        return;
+    }
     if (records_.size() < 2) {
         at_interrupt(folder_, [folder = folder_] {
             remove_private_folder(folder, kFiles);
@@ -254,6 +266,10 @@ void Workspace::tell_at_interrupt() const {
     });
 }
 
+uint64_t Workspace::Record::end() const {
+    return offset + kHeadBytes + bytes.size();
+}
+
 Result<void> Workspace::start(const std::string& identity, Resume resume) {
     keep_ = resume == Resume::go_on;
     LUCARNE_ASSIGN(records_, read_journal());
@@ -261,17 +277,18 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
         const std::string before = as_text(records_[0].bytes);
         const bool same = records_[0].stage == kIdentity && before == identity;
         if (keep_ && same && records_.size() > 1) {
-            log::info("going on after '{}' of the interrupted conversion", records_.back().stage);
-            end_ = records_.back().offset + kHeadBytes + records_.back().bytes.size();
+            if (!ended())
+                log::info("going on after '{}' of the interrupted conversion", records_.back().stage);
+            end_ = records_.back().end();
             tell_at_interrupt();
             return {};
         }
-        if (keep_ && !same && part_.count > 1 && records_.size() > 1)
+        if (keep_ && !same && !ended() && part_.count > 1 && records_.size() > 1)
             return another_build(folder_, difference(before, identity));
-        if (keep_ && !same)
+        if (keep_ && !same && !ended())
             log::warn("the interrupted conversion was another one, starting from the beginning: {}",
                       difference(before, identity));
-        if (!keep_) removed_ = folder_bytes(folder_);
+        if (!keep_ && !ended()) removed_ = folder_bytes(folder_);
     }
     // Files that cannot be removed are emptied when they are opened.
     remove_private_files(folder_, std::span(kFiles).first(kFiles.size() - 1));
@@ -330,6 +347,35 @@ Result<void> Workspace::finish(const std::string& stage, std::vector<std::byte> 
         LUCARNE_TRY(journal_->truncate(end_));
     }
     return append({stage, std::move(record)});
+}
+
+void Workspace::end() {
+    if (!journal_ || records_.size() < 2) return;
+    if (part_.count > 1 && finish(kEnded, {})) return;
+    // Without room for the note, and of one process: the folder has no finished stage.
+    if (journal_->truncate(records_[1].offset)) records_.resize(1);
+}
+
+Result<void> Workspace::reopen() {
+    if (!ended()) return {};
+    assert(records_.back().stage == kEnded);
+    end_ = records_.back().offset;
+    records_.pop_back();
+    tell_at_interrupt();
+    return journal_->truncate(end_);
+}
+
+Result<void> Workspace::begin_anew() {
+    if (!journal_) return {};
+    LUCARNE_TRY(journal_->truncate(0));
+    return begin(text_of(output_, part_, identity_));
+}
+
+void Workspace::done() {
+    keep_ = false;
+    if (folder_.empty()) return;
+    records_.clear();
+    tell_at_interrupt();
 }
 
 Result<void> Workspace::append(Record record) {

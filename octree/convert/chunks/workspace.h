@@ -41,7 +41,8 @@ class Workspace {
     std::string mark() const;
     /// Opens the other folders that are left of the same output, as far as no other process has them open: of
     /// other numbers of processes, or of a process that runs on another machine now. If the build is not to
-    /// go on, they are removed instead, and so are those without a finished stage. `used`: the marks of all
+    /// go on, they are removed instead, and so are those without a finished stage and those of another build
+    /// that has ended. `used`: the marks of all
     /// processes, which have opened their own folders. Errors: the build is to go on, and a folder has stages
     /// of another one, or its journal cannot be read.
     Result<std::vector<Workspace>> left_by_others(std::span<const std::string> used);
@@ -63,15 +64,25 @@ class Workspace {
     const std::vector<std::byte>* finished(const std::string& stage) const;
     /// Records a finished stage. Drops earlier records of it and of the stages after it.
     Result<void> finish(const std::string& stage, std::vector<std::byte> record);
+    /// Notes that the output is complete. A folder with this note is not missed if others of the same build
+    /// are gone. So of several processes, all note it before one of them calls done().
+    void end();
+    bool ended() const { return finished(kEnded) != nullptr; }
+    /// Forgets that the output was complete, because it is made again.
+    Result<void> reopen();
+    /// Forgets all stages.
+    Result<void> begin_anew();
     /// Call when the output is complete: nothing needs to be resumed any more.
-    void done() { keep_ = false; }
+    void done();
 
  private:
     struct Record {
         std::string stage;
         std::vector<std::byte> bytes;
         uint64_t offset = 0;  ///< in the journal
+        uint64_t end() const;
     };
+    static constexpr const char* kEnded = "ended";
     Workspace() = default;
     static std::string text_of(const std::string& output, Part part, const std::string& identity);
     Result<std::vector<Record>> read_journal() const;

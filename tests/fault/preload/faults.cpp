@@ -5,12 +5,12 @@
 //   count:FILE       does nothing; writes the number of calls to FILE at the end
 //   trace:FILE       does nothing; writes the calls' names to FILE at the end, one a line
 //   kill:N           sends SIGKILL before the N-th call (from 1)
-//   kill-sync:N      sends SIGKILL before the N-th fsync, whose number does not depend on the order of
-//   threads signal:N:NUMBER  sends signal NUMBER before the N-th call, which happens only if the signal is
-//   ignored full:N           every write from the N-th call on fails with ENOSPC error:N[:ERRNO]  only the
-//   N-th call fails, with ERRNO (default: 5, EIO), unless it frees space power:N:SEED     cuts the power
-//   before the N-th call, see below
-//
+//   kill-sync:N[:M]  sends SIGKILL before the N-th fsync, whose number does not depend on the order of
+//                    threads; or before the M-th call behind it
+//   signal:N:NUMBER  sends signal NUMBER before the N-th call, which happens only if the signal is ignored
+//   full:N           every write from the N-th call on fails with ENOSPC
+//   error:N[:ERRNO]  only the N-th call fails, with ERRNO (default: 5, EIO), unless it frees space
+//   power:N:SEED     cuts the power before the N-th call, see below
 //   run-write:N      runs the shell command $LUCARNE_FAULT_COMMAND before the N-th pwrite, which then goes on
 //
 // A power cut loses or keeps by chance every sector of 512 bytes that was written since its file's last sync,
@@ -71,8 +71,11 @@ class Faults {
     int enter(const char* name, Call call) {
         ++calls_;
         if (kind_ == "trace") trace_ += std::string(name) + '\n';
-        if (kind_ == "kill-sync" && std::string(name) == "fsync" && ++syncs_ == at_)
-            ::kill(::getpid(), SIGKILL);
+        if (kind_ == "kill-sync") {
+            syncs_ += std::string(name) == "fsync" ? 1 : 0;
+            if (syncs_ == at_ && behind_sync_++ == seed_) ::kill(::getpid(), SIGKILL);
+            return 0;
+        }
         if (kind_ == "run-write" && std::string(name) == "pwrite" && ++writes_ == at_) run();
         if (kind_ == "full" && calls_ >= at_ && call == Call::write) return ENOSPC;
         if (calls_ != at_) return 0;
@@ -199,7 +202,7 @@ class Faults {
 
     std::recursive_mutex mutex_;
     std::string kind_, argument_, trace_;
-    unsigned long long at_ = 0, seed_ = 0, calls_ = 0, syncs_ = 0,
+    unsigned long long at_ = 0, seed_ = 0, calls_ = 0, syncs_ = 0, behind_sync_ = 0,
                        writes_ = 0;  ///< `seed_`: the second number, whatever it means
     std::vector<Undo> undos_;
     std::vector<UndoName> undo_names_;
