@@ -7,6 +7,7 @@
 
 #include "io/core/log_silence.h"
 #include "io/core/machine.h"
+#include "io/files/file.h"
 #include "octree/cache/format.h"
 #include "octree/cache/metadata.h"
 #include "octree/convert/scans/early_count.h"
@@ -15,6 +16,20 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint64_t kGuessedRecord = 32;  ///< bytes of a point in a file that does not say how many it has
+
+/// Returns the checksum of the running program. Two builds may have the same version and revision.
+Result<uint64_t> program_sum() {
+    LUCARNE_ASSIGN(const auto program, InputFile::open("/proc/self/exe"));
+    constexpr uint64_t kPiece = 1 << 20;
+    std::vector<std::byte> piece;
+    std::vector<uint64_t> sums;
+    for (uint64_t at = 0; at < program.size(); at += piece.size()) {
+        piece.resize(std::min(kPiece, program.size() - at));
+        LUCARNE_TRY(program.read_at(at, piece));
+        sums.push_back(format::checksum(piece));
+    }
+    return format::checksum(std::as_bytes(std::span(sums)));
+}
 
 }  // namespace
 
@@ -63,9 +78,10 @@ Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const Mem
 
 Result<void> check_program(Ranks& ranks) {
     const BuildInfo built = build_info();
-    return check_same(
-        ranks, "lucarne-mpi",
-        fmt::format("version {} {} format {}", built.version, built.revision, format::kVersion));
+    LUCARNE_ASSIGN(const uint64_t sum, program_sum());
+    return check_same(ranks, "lucarne-mpi",
+                      fmt::format("version {} {} format {} program {:016x}", built.version, built.revision,
+                                  format::kVersion, sum));
 }
 
 Result<void> check_ranks(Ranks& ranks, const BuildOptions& options) {

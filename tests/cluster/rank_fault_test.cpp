@@ -152,6 +152,22 @@ TEST_F(RankFaults, RanksThatSeeOtherInputsOrOptionsAreRefused) {
     expect_nothing_left();
 }
 
+TEST_F(RankFaults, RanksOfDifferentBuildsAreRefused) {
+    // A build of the same revision, with other bytes.
+    const std::string other = folder_ / "lucarne";
+    std::filesystem::copy_file(LUCARNE_BINARY, other);
+    std::filesystem::copy_file(test::mpi_program(), other + "-mpi");
+    std::ofstream(other + "-mpi", std::ios::binary | std::ios::app) << "x";
+    const std::string script = folder_ / "rank.sh";
+    std::ofstream(script) << "#!/bin/sh\nprogram=" << LUCARNE_BINARY
+                          << "\nif [ \"$OMPI_COMM_WORLD_RANK\" = 1 ]; then program=" << other
+                          << "; fi\nexec $program " << convert() << "\n";
+    const Outcome refused = shell(mpirun(3) + "sh " + script);
+    EXPECT_EQ(refused.code, 1) << refused.output;
+    EXPECT_EQ(times(refused.output, "lucarne-mpi: rank 1 has another one than rank 0"), 3u) << refused.output;
+    expect_nothing_left();
+}
+
 TEST_F(RankFaults, AnErrorOfAppendingIsTheErrorOfAll) {
     const Outcome missing = on_ranks(3, convert() + " --append");
     EXPECT_EQ(missing.code, 3) << missing.output;
