@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstring>
 #include <mutex>
 #include <optional>
@@ -17,12 +18,15 @@ namespace {
 
 using Bytes = Ranks::Bytes;
 
-constexpr size_t kPiece = size_t{1} << 28;       ///< MPI counts in int
+/// MPI counts in int. While pieces arrive, waiting is short, so there are many.
+constexpr size_t kPiece = size_t{1} << 20;
 constexpr size_t kMostAnswer = size_t{1} << 30;  ///< bytes
 constexpr size_t kSumPiece = size_t{1} << 20;    ///< values added up at a time
 constexpr int kQuestion = 1, kStop = 2;          ///< tags
 /// Pauses while waiting: short at first, so that small messages are fast.
 constexpr auto kFirstPause = std::chrono::microseconds(20), kLastPause = std::chrono::microseconds(1000);
+/// Pauses of the listening thread while no questions are expected, but only news of another rank's failure.
+constexpr auto kIdlePause = std::chrono::milliseconds(20);
 
 /// Waits longer from time to time.
 class Patience {
@@ -49,7 +53,11 @@ class MpiRanks final : public Ranks {
         server_ = std::thread([this] { listen(); });
     }
     ~MpiRanks() override {
-        ending_ = true;
+        {
+            const std::lock_guard lock(answer_mutex_);
+            ending_ = true;
+            wake_.notify_one();
+        }
         server_.join();
         for (MPI_Comm* comm : {&meetings_, &questions_, &answers_}) MPI_Comm_free(comm);
         MPI_Finalize();
@@ -69,6 +77,7 @@ class MpiRanks final : public Ranks {
     void serve(Answer answer) override {
         const std::lock_guard lock(answer_mutex_);
         answer_ = std::move(answer);
+        wake_.notify_one();
     }
     Result<Bytes> ask(size_t rank, std::span<const std::byte> question) override;
 
@@ -119,6 +128,7 @@ class MpiRanks final : public Ranks {
     std::mutex mpi_;  ///< one call of MPI at a time
     std::mutex answer_mutex_;
     Answer answer_;
+    std::condition_variable wake_;  ///< of the listening thread, when questions are expected or all ends
     std::mutex tag_mutex_;
     std::set<int> tags_;  ///< of answers that are waited for
     std::atomic<bool> ending_{false};
@@ -131,14 +141,20 @@ class MpiRanks final : public Ranks {
 };
 
 void MpiRanks::complete_all(std::vector<MPI_Request>& requests) {
+    const auto count = static_cast<int>(requests.size());
+    std::vector<int> which(requests.size());
     Patience patience;
-    for (int done = 0;;) {
+    for (int left = count; left > 0;) {
+        int done = 0;
         {
             const std::lock_guard lock(mpi_);
-            MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+            MPI_Testsome(count, requests.data(), &done, which.data(), MPI_STATUSES_IGNORE);
         }
-        if (done) return;
-        patience.wait();
+        left -= done;
+        if (done > 0)
+            patience.reset();
+        else
+            patience.wait();
     }
 }
 
@@ -316,10 +332,18 @@ void MpiRanks::listen() {
             std::memcpy(&epoch, message.data(), std::min(sizeof epoch, message.size()));
             stopped_at_ = epoch;
         }
-        if (answer_next())
+        if (answer_next()) {
             patience.reset();
-        else
-            patience.wait();
+            continue;
+        }
+        std::unique_lock lock(answer_mutex_);
+        if (!answer_ && !failing_ && !ending_) {
+            wake_.wait_for(lock, kIdlePause);
+            patience.reset();
+            continue;
+        }
+        lock.unlock();
+        patience.wait();
     }
 }
 

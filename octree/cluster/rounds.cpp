@@ -6,13 +6,14 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint64_t kParcelShare = 4;  ///< the parcels of a round have this part of the memory
-constexpr uint64_t kLeastParcel = 64 << 10;
+/// Larger ones do not stay in a processor's cache while they are sorted and written.
+constexpr uint64_t kLeastParcel = 64 << 10, kMostParcel = 8 << 20;
 
 }  // namespace
 
 Rounds::Rounds(Ranks& ranks, uint64_t bytes, Receive receive)
     : ranks_(ranks),
-      most_(std::max(kLeastParcel, bytes / kParcelShare / ranks.count())),
+      most_(std::clamp(bytes / kParcelShare / ranks.count(), kLeastParcel, kMostParcel)),
       receive_(std::move(receive)) {
     start();
 }
