@@ -121,12 +121,15 @@ Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, Inp
     ChunkStore store(std::move(file), inputs.schema(), facts.root, stations);
     const ThreadLimit readers(memory.readers);
     uint64_t own_points = 0;
-    for (size_t input = own.first; input < own.end; ++input) own_points += facts.inputs[input].points;
+    for (size_t input = own.first; input < own.end; ++input)
+        own_points += own.count_in(input, facts.inputs[input].points);
     Steps steps(options.listener, "sorting into chunks", (counted ? 1 : 2) * own_points);
     const Pass points = pass_over_inputs(inputs, own, memory.batch_bytes);
     const Pass pass =
-        with_steps(stations ? with_point_stations(points, inputs.schema(), facts.spans) : points, steps,
-                   store.schema().stride);
+        with_steps(stations ? with_point_stations(points, inputs.schema(), facts.spans,
+                                                  {static_cast<uint32_t>(own.first), own.first_point})
+                            : points,
+                   steps, store.schema().stride);
     if (options.ranks) {
         LUCARNE_TRY(
             store.fill(pass, facts.points, memory, *options.ranks, work.resumable(), std::move(counted)));
@@ -160,7 +163,7 @@ Result<ScanFacts> scan_and_count(const Unifier& inputs, InputRange own, const Me
     const ThreadLimit readers(memory.readers);
     uint64_t declared = 0;
     for (size_t input = own.first; input < own.end; ++input)
-        declared += inputs.source(input).info().declared_points;
+        declared += own.count_in(input, inputs.source(input).info().declared_points);
     Steps steps(options.listener, "reading", declared);
     const auto seen = [&](std::span<const std::byte> records) -> Result<void> {
         if (options.ranks && options.ranks->stopped())
@@ -321,7 +324,10 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
         LUCARNE_TRY(check_ranks(*ranks, options));
         LUCARNE_ASSIGN(held.cache, SharedCache::create(*ranks, options, folder));
     }
-    const InputRange own = ranks ? inputs_of_rank(inputs, *ranks) : InputRange{0, inputs.inputs()};
+    InputRange own{0, inputs.inputs()};
+    if (ranks) {
+        LUCARNE_ASSIGN(own, inputs_of_rank(inputs, *ranks));
+    }
     LUCARNE_TRY(open_workspace(options, inputs, own, folder, memory, held));
     Workspace& work = *held.work;
     std::optional<CountGrid> counted;

@@ -31,6 +31,7 @@ std::string file_identity(const std::filesystem::path& path) {
 Result<std::string> build_identity(const BuildOptions& options, InputRange own, Ranks& ranks) {
     Ranks::Bytes found;
     for (size_t i = own.first; i < own.end; ++i) {
+        if (own.begin_in(i) > 0) continue;  // the rank with its first part says it
         std::error_code error;
         const std::string file =
             file_identity(std::filesystem::absolute(options.inputs[i]->info().path, error)) + "\n";

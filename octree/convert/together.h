@@ -10,8 +10,9 @@
 
 namespace lucarne::octree {
 
-/// Returns the inputs that this rank reads. The ranks read consecutive inputs with about equally many points.
-InputRange inputs_of_rank(const Unifier& inputs, const Ranks& ranks);
+/// Returns the inputs that this rank reads. The ranks read consecutive inputs with about equally many points:
+/// whole ones if that is even enough, else also parts of those that can be divided. Errors: unreadable.
+Result<InputRange> inputs_of_rank(const Unifier& inputs, const Ranks& ranks);
 
 /// Scans the inputs on all ranks. `seen` gets the points of this rank. `counted` becomes the counts of this
 /// rank's points for the chunks, on all ranks or on none. A meeting.

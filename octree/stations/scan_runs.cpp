@@ -4,6 +4,17 @@
 
 namespace lucarne::octree {
 
+ScanRuns::ScanRuns(uint64_t first, uint64_t points, const glm::dvec3& origin)
+    : origin_(origin), seen_(first) {
+    // A scan halves its runs when a point comes behind the last run that it can keep.
+    while (points > ((kMostRuns - 1) * stride_ + 1) * kRunPoints) stride_ *= 2;
+}
+
+void ScanRuns::join(std::span<const glm::vec3> points, uint64_t count) {
+    points_.insert(points_.end(), points.begin(), points.end());
+    seen_ += count;
+}
+
 void ScanRuns::add(const io::Schema& schema, std::span<const std::byte> records) {
     const uint64_t count = records.size() / schema.stride;
     if (seen_ == 0 && count > 0) origin_ = io::position_of(schema, records.data());

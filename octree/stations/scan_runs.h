@@ -17,6 +17,11 @@ class ScanRuns {
  public:
     static constexpr size_t kRunPoints = 64, kMostRuns = 4096;
 
+    ScanRuns() = default;
+    /// For a part of a scan of `points` points, from point `first` on, with those runs that a scan of so many
+    /// points keeps. `origin`: the scan's first point.
+    ScanRuns(uint64_t first, uint64_t points, const glm::dvec3& origin);
+
     /// Adds the scan's next points: records of `schema`.
     void add(const io::Schema& schema, std::span<const std::byte> records);
 
@@ -26,6 +31,10 @@ class ScanRuns {
     std::span<const glm::vec3> run(size_t index) const {
         return {points_.data() + index * kRunPoints, kRunPoints};
     }
+    /// All points that are kept, also those of an incomplete run at the end; or at the start of a part.
+    std::span<const glm::vec3> kept() const { return points_; }
+    /// Adds the `count` points of the part behind this one, which has kept `points`.
+    void join(std::span<const glm::vec3> points, uint64_t count);
     /// The index of a run's first point in the scan.
     uint64_t first_point(size_t index) const { return index * stride_ * kRunPoints; }
     /// Number of points added so far.

@@ -96,6 +96,32 @@ TEST_F(SameBytes, WithNormalsOfOneTileWithStations) {
     expect_same({"nave.laz"}, "--no-fill");
 }
 
+/// Makes a scan whose stations a conversion has to find: the record that states them gets another name.
+void make_silent(const test::TemporaryFolder& folder, const std::string& name, const std::string& points) {
+    const Outcome made = lucarne("generate two-rooms --points " + points + " -o " + folder / name);
+    ASSERT_EQ(made.code, 0) << made.output;
+    std::string bytes = test::bytes_of(folder / name);
+    const std::string user("lucarne", sizeof "lucarne"), other("nobody1", sizeof "nobody1");
+    ASSERT_NE(bytes.find(user), std::string::npos);
+    for (size_t at = 0; (at = bytes.find(user, at)) != std::string::npos;)
+        bytes.replace(at, user.size(), other);
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+}
+
+TEST_F(SameBytes, OfOneFileOfWhichEachRankReadsAPart) {
+    make_silent(*folder_, "silent.las", "60k");
+    expect_same({"silent.las"}, "");
+    const Outcome two = on_ranks(
+        2, "convert " + inputs({"silent.las"}) + "--memory 48M --overwrite -o " + *folder_ / "together.luc");
+    EXPECT_NE(two.output.find("reading: 30k points"), std::string::npos) << "by rank 0\n" << two.output;
+    EXPECT_NE(two.output.find("4 stations estimated"), std::string::npos) << two.output;
+}
+
+TEST_F(SameBytes, OfALargeCompressedFileBetweenSmallOnes) {
+    make_silent(*folder_, "silent.laz", "220k");
+    expect_same({"statue.ply", "silent.laz", "cornell.las"}, "--no-fill");
+}
+
 TEST_F(SameBytes, WhereEachRankSeesOnlyItsShareOfTheFiles) {
     const test::TemporaryFolder views;  // a folder with one file for each rank, and one with both
     const std::vector<std::string> names = {"survey.las", "nave.laz"};

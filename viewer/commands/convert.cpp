@@ -16,6 +16,7 @@
 #include "io/core/options.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
+#include "io/formats/common/divisible.h"
 #include "io/formats/scan.h"
 #include "octree/convert/build.h"
 #include "octree/edit/edit.h"
@@ -43,7 +44,7 @@ struct ConvertOptions {
 
 /// A scan whose file is open only while it is read, so that thousands of inputs do not need thousands of file
 /// handles.
-class ClosedScan final : public io::PointSource {
+class ClosedScan final : public io::PointSource, public io::DivisibleSource {
  public:
     ClosedScan(std::string path, io::ReadOptions options, ScanHeader header)
         : path_(std::move(path)),
@@ -55,17 +56,34 @@ class ClosedScan final : public io::PointSource {
     const io::Schema& schema() const override { return schema_; }
     const io::ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<io::PointReader>> open() const override {
-        auto scan = reopened();
-        if (!scan) return tl::make_unexpected(scan.error());
-        if ((*scan)->schema() != schema_) return rejected(path_, "changed while it was read");
-        LUCARNE_ASSIGN(auto reader, (*scan)->open());
-        return std::make_unique<Reader>(*std::move(scan), std::move(reader));
+        return opened([](const io::PointSource& scan) { return scan.open(); });
+    }
+    Result<uint64_t> cut(uint64_t point) const override {
+        LUCARNE_ASSIGN(const auto scan, reopened());
+        const auto* divisible = dynamic_cast<const io::DivisibleSource*>(scan.get());
+        return divisible ? divisible->cut(point) : uint64_t{0};
+    }
+    Result<std::unique_ptr<io::PointReader>> open_part(uint64_t first, uint64_t end) const override {
+        using Opened = Result<std::unique_ptr<io::PointReader>>;
+        return opened([&](const io::PointSource& scan) -> Opened {
+            const auto* divisible = dynamic_cast<const io::DivisibleSource*>(&scan);
+            if (!divisible) return rejected(path_, "changed while it was read");
+            return divisible->open_part(first, end);
+        });
     }
 
  private:
     Result<std::unique_ptr<io::PointSource>> reopened() const {
         const log::Hush said_before;  // by the rank that read the header
         return io::open_scan(path_, options_);
+    }
+    /// Opens the file and starts a pass over it.
+    template <class Start>
+    Result<std::unique_ptr<io::PointReader>> opened(const Start& start) const {
+        LUCARNE_ASSIGN(auto scan, reopened());
+        if (scan->schema() != schema_) return rejected(path_, "changed while it was read");
+        LUCARNE_ASSIGN(auto reader, start(*scan));
+        return std::make_unique<Reader>(std::move(scan), std::move(reader));
     }
     class Reader final : public io::PointReader {
      public:

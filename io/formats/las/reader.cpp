@@ -9,6 +9,7 @@
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/color_depth.h"
+#include "io/formats/common/divisible.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
 #include "io/formats/common/stations.h"
@@ -23,12 +24,15 @@ namespace {
 
 class LasReader final : public PointReader {
  public:
-    LasReader(std::shared_ptr<const ByteSource> file, const las::Header& header, const Schema& schema)
-        : input_(std::move(file), header.points_offset,
-                 header.points_offset + header.points * header.record_length),
+    /// Reads the points [first, end).
+    LasReader(std::shared_ptr<const ByteSource> file, const las::Header& header, const Schema& schema,
+              uint64_t first, uint64_t end)
+        : input_(std::move(file), header.points_offset + first * header.record_length,
+                 header.points_offset + end * header.record_length),
           header_(header),
           schema_(schema),
-          left_(header.points) {}
+          left_(end - first),
+          behind_(header.points - end) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
         const auto wanted = static_cast<size_t>(std::min<uint64_t>(batch_limit(schema_, most), left_));
@@ -38,7 +42,8 @@ class LasReader final : public PointReader {
             LUCARNE_ASSIGN(const auto bytes, input_.peek(header_.record_length));
             const size_t count = std::min(bytes.size() / header_.record_length, wanted - batch.count);
             if (count == 0)
-                return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
+                return rejected(input_.path(),
+                                fmt::format("ends early: {} points are missing", left_ + behind_));
             las::decode(header_, bytes.data(), count, batch.bytes.data() + batch.count * schema_.stride,
                         schema_.stride);
             input_.skip(count * header_.record_length);
@@ -53,7 +58,7 @@ class LasReader final : public PointReader {
     BufferedInput input_;
     const las::Header& header_;
     const Schema& schema_;
-    uint64_t left_;
+    uint64_t left_, behind_;  ///< points of this pass, and after it
 };
 
 /// Passes on the points of a reader, and warns once per source about points far outside the box that the
@@ -87,7 +92,7 @@ class WatchedReader final : public PointReader {
     std::atomic<bool>& warned_;
 };
 
-class LasSource final : public PointSource {
+class LasSource final : public PointSource, public DivisibleSource {
  public:
     LasSource(std::shared_ptr<const ByteSource> file, las::Header header)
         : file_(std::move(file)),
@@ -141,12 +146,20 @@ class LasSource final : public PointSource {
     const Schema& schema() const override { return schema_; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override {
-        std::unique_ptr<PointReader> reader;
-        if (compressed_)
-            reader = laz::open_points(*compressed_, schema_);
-        else
-            reader = std::make_unique<LasReader>(file_, header_, schema_);
-        return std::make_unique<WatchedReader>(std::move(reader), info_.path, bounds_, schema_, warned_);
+        return watched(compressed_ ? laz::open_points(*compressed_, schema_)
+                                   : std::make_unique<LasReader>(file_, header_, schema_, 0, header_.points));
+    }
+    Result<uint64_t> cut(uint64_t point) const override {
+        point = std::min(point, header_.points);
+        return compressed_ ? laz::chunk_begin(*compressed_, point).point : point;
+    }
+    Result<std::unique_ptr<PointReader>> open_part(uint64_t first, uint64_t end) const override {
+        end = std::min(end, header_.points);
+        if (first > end) return failed(info_.path, "has no such points");
+        if (!compressed_) return watched(std::make_unique<LasReader>(file_, header_, schema_, first, end));
+        const auto from = laz::chunk_begin(*compressed_, first), to = laz::chunk_begin(*compressed_, end);
+        if (from.point != first || to.point != end) return failed(info_.path, "cannot be divided there");
+        return watched(laz::open_points(*compressed_, schema_, from.chunk, to.chunk));
     }
     bool seekable() const override { return !compressed_; }
     size_t parts() const override {
@@ -171,6 +184,9 @@ class LasSource final : public PointSource {
     }
 
  private:
+    std::unique_ptr<PointReader> watched(std::unique_ptr<PointReader> reader) const {
+        return std::make_unique<WatchedReader>(std::move(reader), info_.path, bounds_, schema_, warned_);
+    }
     /// A negative scale is valid, but hardly ever intended.
     void warn_of_mirrors(const std::string& name) const {
         for (int axis = 0; axis < 3; ++axis)

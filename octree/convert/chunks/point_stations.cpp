@@ -10,8 +10,10 @@ namespace {
 /// Tells the station of points that come one after the other, each scan's in its order.
 class StationCounter {
  public:
-    StationCounter(const ScanNumber& scan, const std::vector<StationSpan>& spans) : scan_(scan) {
+    StationCounter(const ScanNumber& scan, const std::vector<StationSpan>& spans, ScanPlace begin)
+        : scan_(scan) {
         for (const StationSpan& span : spans) of_scan_[span.scan].spans.push_back(span);
+        of_scan_[begin.scan].points = begin.point;
     }
 
     /// Returns what is stored for the next record: 1 + the index of its station, 0 if unknown.
@@ -44,9 +46,10 @@ class StationCounter {
 
 }  // namespace
 
-Pass with_point_stations(Pass pass, const io::Schema& schema, const std::vector<StationSpan>& spans) {
-    return [pass = std::move(pass), schema, spans](const Visit& visit) -> Result<void> {
-        StationCounter counter(ScanNumber(schema), spans);
+Pass with_point_stations(Pass pass, const io::Schema& schema, const std::vector<StationSpan>& spans,
+                         ScanPlace begin) {
+    return [pass = std::move(pass), schema, spans, begin](const Visit& visit) -> Result<void> {
+        StationCounter counter(ScanNumber(schema), spans, begin);
         std::vector<std::byte> wider;
         return pass([&](std::span<const std::byte> records) -> Result<void> {
             const size_t from = schema.stride, to = from + kStationBytes;

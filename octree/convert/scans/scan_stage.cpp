@@ -10,6 +10,7 @@
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/formats/common/color_depth.h"
+#include "io/formats/common/divisible.h"
 #include "octree/convert/chunks/record_bytes.h"
 #include "octree/convert/scans/early_count.h"
 #include "octree/stations/find_stations.h"
@@ -23,15 +24,28 @@ struct LeftOut {
     uint64_t dropped = 0;
     io::Losses losses;
 };
-Result<LeftOut> read_input(const Unifier& inputs, size_t input, uint64_t batch_bytes, const Visit& visit) {
-    LUCARNE_ASSIGN(const auto reader, inputs.source(input).open());
+/// Starts a pass over the points of an input that are in the range.
+Result<std::unique_ptr<io::PointReader>> open_input(const Unifier& inputs, size_t input,
+                                                    const InputRange& range) {
+    const io::PointSource& source = inputs.source(input);
+    if (range.whole(input)) return source.open();
+    const auto* divisible = dynamic_cast<const io::DivisibleSource*>(&source);
+    if (!divisible) return failed(source.info().path, "cannot be read in parts");
+    return divisible->open_part(range.begin_in(input),
+                                std::min(range.end_in(input), source.info().declared_points));
+}
+
+Result<LeftOut> read_input(const Unifier& inputs, size_t input, const InputRange& range, uint64_t batch_bytes,
+                           const Visit& visit) {
+    LUCARNE_ASSIGN(const auto reader, open_input(inputs, input, range));
     const size_t most = std::clamp<size_t>(batch_bytes / inputs.schema().stride, 1, 1 << 16);
     io::PointBatch batch;
     std::vector<std::byte> storage;
     for (;;) {
         LUCARNE_ASSIGN(const size_t count, reader->read(batch, most));
         if (count == 0) {
-            LeftOut left{reader->dropped(), inputs.source(input).info().losses};
+            LeftOut left{reader->dropped(), {}};
+            if (range.begin_in(input) == 0) left.losses = inputs.source(input).info().losses;
             io::add_losses(left.losses, reader->losses());
             return left;
         }
@@ -50,9 +64,22 @@ std::string get_text(ByteReader& reader) {
     return {text.begin(), text.end()};
 }
 
-/// Adds the stations that an input's points show.
-void add_stations(ScanFacts& facts, size_t input, const io::ScanInfo& info, const ScanRuns& runs,
-                  size_t most) {
+/// Returns what keeps the runs of an input, of which a range may have a part.
+Result<ScanRuns> runs_of(const Unifier& inputs, size_t input, const InputRange& range) {
+    if (range.whole(input)) return ScanRuns();
+    LUCARNE_ASSIGN(const auto reader, inputs.source(input).open());
+    io::PointBatch batch;
+    std::vector<std::byte> storage;
+    LUCARNE_ASSIGN(const size_t count, reader->read(batch, 1));
+    glm::dvec3 origin(0.0);
+    if (count > 0) origin = io::position_of(inputs.schema(), inputs.convert(input, batch, storage).data());
+    return ScanRuns(range.begin_in(input), inputs.source(input).info().declared_points, origin);
+}
+
+}  // namespace
+
+void add_stations(ScanFacts& facts, const Unifier& inputs, size_t input, const ScanRuns& runs, size_t most) {
+    const io::ScanInfo& info = inputs.source(input).info();
     auto found = find_stations(runs, info.metres_per_unit);
     found.resize(std::min(found.size(), most - facts.stations.size()));
     auto spans = station_spans(runs, found, info.metres_per_unit);
@@ -66,8 +93,6 @@ void add_stations(ScanFacts& facts, size_t input, const io::ScanInfo& info, cons
         facts.spans.push_back(span);
     }
 }
-
-}  // namespace
 
 Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
     const glm::dvec3 extent = max - min;
@@ -140,7 +165,16 @@ Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
     return facts;
 }
 
-void ScanFacts::join(ScanFacts later) {
+void ScanFacts::join(ScanFacts later, bool continued) {
+    if (continued && !inputs.empty() && !later.inputs.empty()) {
+        io::Contents &all = inputs.back(), &part = later.inputs.front();
+        all.points += part.points;
+        all.min = glm::min(all.min, part.min);
+        all.max = glm::max(all.max, part.max);
+        all.color_bits = std::max(all.color_bits, part.color_bits);
+        io::add_losses(all.losses, part.losses);
+        later.inputs.erase(later.inputs.begin());
+    }
     points += later.points;
     dropped += later.dropped;
     without_normal += later.without_normal;
@@ -158,13 +192,13 @@ void ScanFacts::join(ScanFacts later) {
 Pass pass_over_inputs(const Unifier& inputs, InputRange range, uint64_t batch_bytes) {
     return [&inputs, range, batch_bytes](const Visit& visit) -> Result<void> {
         for (size_t input = range.first; input < range.end; ++input)
-            LUCARNE_TRY(read_input(inputs, input, batch_bytes, visit));
+            LUCARNE_TRY(read_input(inputs, input, range, batch_bytes, visit));
         return {};
     };
 }
 
 Result<ScanFacts> scan_range(const Unifier& inputs, InputRange range, uint64_t batch_bytes,
-                             size_t most_stations, EarlyCount* early, const Visit& seen_by) {
+                             size_t most_stations, EarlyCount* early, const Visit& seen_by, PartRuns* parts) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ScanFacts facts{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
     const auto& schema = inputs.schema();
@@ -175,22 +209,28 @@ Result<ScanFacts> scan_range(const Unifier& inputs, InputRange range, uint64_t b
         const io::ScanInfo& info = inputs.source(input).info();
         const bool search = info.stations.empty();
         ScanRuns runs;
-        LUCARNE_ASSIGN(
-            LeftOut left,
-            read_input(inputs, input, batch_bytes, [&](std::span<const std::byte> records) -> Result<void> {
-                for (size_t at = 0; at < records.size(); at += schema.stride) {
-                    const auto p = io::position_of(schema, &records[at]);
-                    seen.min = glm::min(seen.min, p);
-                    seen.max = glm::max(seen.max, p);
-                }
-                seen.points += records.size() / schema.stride;
-                depth.add(records);
-                facts.without_normal += normals.missing(records, schema.stride);
-                if (search) runs.add(schema, records);
-                if (early) early->add(schema, records, seen.min, seen.max);
-                return seen_by ? seen_by(records) : Result<void>();
-            }));
-        if (search) add_stations(facts, input, info, runs, most_stations);
+        if (search) {
+            LUCARNE_ASSIGN(runs, runs_of(inputs, input, range));
+        }
+        LUCARNE_ASSIGN(LeftOut left,
+                       read_input(inputs, input, range, batch_bytes,
+                                  [&](std::span<const std::byte> records) -> Result<void> {
+                                      for (size_t at = 0; at < records.size(); at += schema.stride) {
+                                          const auto p = io::position_of(schema, &records[at]);
+                                          seen.min = glm::min(seen.min, p);
+                                          seen.max = glm::max(seen.max, p);
+                                      }
+                                      seen.points += records.size() / schema.stride;
+                                      depth.add(records);
+                                      facts.without_normal += normals.missing(records, schema.stride);
+                                      if (search) runs.add(schema, records);
+                                      if (early) early->add(schema, records, seen.min, seen.max);
+                                      return seen_by ? seen_by(records) : Result<void>();
+                                  }));
+        if (search && range.whole(input))
+            add_stations(facts, inputs, input, runs, most_stations);
+        else if (search && parts)
+            (range.begin_in(input) == 0 ? parts->first_part : parts->later_part) = std::move(runs);
         seen.color_bits = depth.bits();
         facts.min = glm::min(facts.min, seen.min);
         facts.max = glm::max(facts.max, seen.max);

@@ -103,14 +103,15 @@ Result<uint64_t> sound_points(const Points& points, size_t index) {
 
 class Reader final : public PointReader {
  public:
-    Reader(const Points& points, const Schema& schema)
+    Reader(const Points& points, const Schema& schema, size_t first, size_t end)
         : points_(points),
           schema_(schema),
+          next_(first),
+          end_(end),
           side_by_side_(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
-        while (taken_ == ready_.size() && (large_.decoder || next_ < points_.chunks.size()))
-            LUCARNE_TRY(fill());
+        while (taken_ == ready_.size() && (large_.decoder || next_ < end_)) LUCARNE_TRY(fill());
         const size_t count = std::min(batch_limit(schema_, most), (ready_.size() - taken_) / schema_.stride);
         const auto from = ready_.begin() + static_cast<std::ptrdiff_t>(taken_);
         batch.bytes.assign(from, from + static_cast<std::ptrdiff_t>(count * schema_.stride));
@@ -127,8 +128,7 @@ class Reader final : public PointReader {
     Result<void> fill() {
         taken_ = 0;
         ready_.clear();
-        if (!large_.decoder && next_ < points_.chunks.size() &&
-            points_.chunks[next_].taken() > most_ready()) {
+        if (!large_.decoder && next_ < end_ && points_.chunks[next_].taken() > most_ready()) {
             return begin_large();
         }
         return large_.decoder ? fill_from_large() : fill_side_by_side();
@@ -181,7 +181,7 @@ class Reader final : public PointReader {
         const size_t first = next_;
         std::vector<uint64_t> begins;
         uint64_t count = 0;
-        for (; next_ < points_.chunks.size() && begins.size() < most_chunks(); ++next_) {
+        for (; next_ < end_ && begins.size() < most_chunks(); ++next_) {
             const uint64_t more = points_.chunks[next_].taken();
             if (count + more > most_ready()) break;
             begins.push_back(count);
@@ -244,8 +244,8 @@ class Reader final : public PointReader {
 
     const Points& points_;
     const Schema& schema_;
+    size_t next_, end_;    ///< the next chunk, and the end of this pass
     size_t side_by_side_;  ///< threads that may decode; one thread holds one chunk, several hold several each
-    size_t next_ = 0;      ///< the next chunk
     OpenChunk large_;
     std::vector<std::byte> ready_;
     size_t taken_ = 0;
@@ -271,7 +271,25 @@ Result<std::vector<std::byte>> read_chunk(const Points& points, size_t index, co
 }
 
 std::unique_ptr<PointReader> open_points(const Points& points, const Schema& schema) {
-    return std::make_unique<Reader>(points, schema);
+    return open_points(points, schema, 0, points.chunks.size());
+}
+std::unique_ptr<PointReader> open_points(const Points& points, const Schema& schema, size_t first,
+                                         size_t end) {
+    return std::make_unique<Reader>(points, schema, first, end);
+}
+
+ChunkBegin chunk_begin(const Points& points, uint64_t point) {
+    const auto& chunks = points.chunks;
+    // Without a table, places and numbers of points are guesses; damaged chunks give fewer points.
+    bool known = points.compression.chunked && !points.salvage;
+    for (size_t i = 0; known && i + 1 < chunks.size(); ++i)
+        known = chunks[i].offset + chunks[i].bytes <= chunks[i + 1].offset;
+    ChunkBegin begin, found;
+    for (const ChunkPlace& chunk : chunks) {
+        begin = {begin.chunk + 1, begin.point + chunk.taken()};
+        if (begin.point <= point && (known || begin.chunk == chunks.size())) found = begin;
+    }
+    return found;
 }
 
 }  // namespace lucarne::io::laz

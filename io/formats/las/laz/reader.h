@@ -25,5 +25,17 @@ Result<std::vector<std::byte>> read_chunk(const Points& points, size_t index, co
 /// Starts a pass over the points, as records of las::make_schema. Several chunks are decoded in parallel.
 /// `points` and `schema` must outlive the reader.
 std::unique_ptr<PointReader> open_points(const Points& points, const Schema& schema);
+/// The same for the chunks [first, end).
+std::unique_ptr<PointReader> open_points(const Points& points, const Schema& schema, size_t first,
+                                         size_t end);
+
+/// Where a chunk begins.
+struct ChunkBegin {
+    size_t chunk = 0;
+    uint64_t point = 0;
+};
+/// Returns the last beginning of a chunk at `point` or before it, or the end of the last chunk. Where it is
+/// not known how many points each chunk gives, only the first beginning and the end are known.
+ChunkBegin chunk_begin(const Points& points, uint64_t point);
 
 }  // namespace lucarne::io::laz
