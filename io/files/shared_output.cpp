@@ -15,7 +15,6 @@
 namespace lucarne {
 
 using file_io::reason;
-using file_io::remove_at_interrupt;
 
 namespace {
 
@@ -25,6 +24,19 @@ bool lock_whole(int fd) {
     lock.l_type = F_WRLCK;
     lock.l_whence = SEEK_SET;
     return ::fcntl(fd, F_OFD_SETLK, &lock) == 0 || (errno != EAGAIN && errno != EACCES);
+}
+
+/// Removes the opened file at an interrupt, unless its name stands for another one by then: it was given its
+/// final name, and the next conversion to the same output has begun.
+void remove_at_interrupt(const std::filesystem::path& name, int fd) {
+    struct stat held {};
+    if (::fstat(fd, &held) != 0) return;
+    at_interrupt(name, [name, held] {
+        struct stat named {};
+        if (::stat(name.c_str(), &named) == 0 && named.st_ino == held.st_ino && named.st_dev == held.st_dev)
+            ::unlink(name.c_str());
+        return std::string();
+    });
 }
 
 }  // namespace
@@ -56,7 +68,7 @@ Result<SharedOutput> SharedOutput::create(const std::filesystem::path& path, boo
         if (::ftruncate(output.fd_, 0) != 0)
             return failed(name.string(), fmt::format("cannot be emptied ({})", reason(errno)));
         output.created_ = true;
-        remove_at_interrupt(name);
+        remove_at_interrupt(name, output.fd_);
         return output;
     }
 }
@@ -69,7 +81,7 @@ Result<SharedOutput> SharedOutput::open(const std::filesystem::path& path) {
     if (output.fd_ < 0)
         return failed(path.string(), fmt::format("cannot be opened for writing ({})", reason(errno)),
                       "write it to a folder that all nodes share");
-    remove_at_interrupt(name);
+    remove_at_interrupt(name, output.fd_);
     return output;
 }
 

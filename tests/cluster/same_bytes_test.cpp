@@ -1,4 +1,5 @@
 // Several ranks write the same bytes as one process.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -101,10 +102,11 @@ void make_silent(const test::TemporaryFolder& folder, const std::string& name, c
     const Outcome made = lucarne("generate two-rooms --points " + points + " -o " + folder / name);
     ASSERT_EQ(made.code, 0) << made.output;
     std::string bytes = test::bytes_of(folder / name);
-    const std::string user("lucarne", sizeof "lucarne"), other("nobody1", sizeof "nobody1");
-    ASSERT_NE(bytes.find(user), std::string::npos);
-    for (size_t at = 0; (at = bytes.find(user, at)) != std::string::npos;)
-        bytes.replace(at, user.size(), other);
+    const std::string user("lucarne\0", 8), other("nobody1\0", 8);
+    size_t found = 0;
+    for (size_t at = 0; (at = bytes.find(user, at)) != std::string::npos; ++found)
+        std::ranges::copy(other, bytes.begin() + static_cast<ptrdiff_t>(at));
+    ASSERT_GT(found, 0u);
     std::ofstream(folder / name, std::ios::binary) << bytes;
 }
 
