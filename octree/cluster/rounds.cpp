@@ -7,7 +7,7 @@ namespace {
 
 constexpr uint64_t kParcelShare = 4;  ///< the parcels of a round have this part of the memory
 /// Larger ones do not stay in a processor's cache while they are sorted and written.
-constexpr uint64_t kLeastParcel = 64 << 10, kMostParcel = 8 << 20;
+constexpr uint64_t kLeastParcel = 64 << 10, kMostParcel = 2 << 20;
 
 }  // namespace
 
