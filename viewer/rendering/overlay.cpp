@@ -22,6 +22,24 @@ std::string side_label(std::string_view wanted, std::string_view drawn) {
     return gi::label_of(wanted) + (wanted == drawn ? "" : " (rendering)");
 }
 
+/// Returns the width of the sign's text with the room around it, pixels.
+float text_width(const std::string& text) {
+    return ImGui::CalcTextSize(text.c_str()).x + scaled(9);
+}
+
+/// The sign of convergence in the window's lower right corner.
+struct SignShape {
+    ImVec2 centre;
+    float radius, across;  ///< of the ring and of its plate, pixels
+};
+/// Leaves room for the longest text, so that the sign stays where it is.
+SignShape sign_shape() {
+    const float font = ImGui::GetFontSize(), radius = 0.7f * font, across = radius + scaled(4);
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const float longest = text_width(fmt::format("{0} of {0}", kMostAccumulated));
+    return {{size.x - scaled(8) - longest - across, size.y - 1.2f * font}, radius, across};
+}
+
 }  // namespace
 
 bool take_comparison_border(const Rendering& model) {
@@ -57,20 +75,23 @@ bool take_comparison_border(const Rendering& model) {
     return true;
 }
 
+float convergence_left() {
+    const SignShape sign = sign_shape();
+    return sign.centre.x - sign.across;
+}
+
 void draw_convergence(const View& view) {
     if (!view.picture || view.picture->stats.accumulated >= kMostAccumulated) return;
     const float share =
         view.picture->moving ? 0 : static_cast<float>(view.picture->stats.accumulated) / kMostAccumulated;
-    const float font = ImGui::GetFontSize(), radius = 0.7f * font;
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const ImVec2 centre(size.x - 7 * font, size.y - 1.2f * font);  // the line of messages is in the middle
+    const auto [centre, radius, across] = sign_shape();
+    const float font = ImGui::GetFontSize();
     constexpr float kTop = -std::numbers::pi_v<float> / 2;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const std::string text = view.picture->moving
                                  ? ""
                                  : fmt::format("{} of {}", view.picture->stats.accumulated, kMostAccumulated);
-    const float across = radius + scaled(4),
-                width = text.empty() ? 0 : ImGui::CalcTextSize(text.c_str()).x + scaled(9);
+    const float width = text.empty() ? 0 : text_width(text);
     draw_plate(list, {centre.x - across, centre.y - across}, {centre.x + across + width, centre.y + across},
                across);
     list.AddCircle(centre, radius, kRing, 32, scaled(3));

@@ -20,6 +20,7 @@ void draw_rendering_panel(const Rendering& model);  ///< engine, preset, bounces
 /// Draws the border of a comparison, and lets the mouse drag it. Returns true while it is dragged.
 bool take_comparison_border(const Rendering& model);
 void draw_convergence(const View& view);  ///< a ring that closes while pictures are averaged
+float convergence_left();                 ///< where its plate begins in the window, x
 
 /// Compares with another engine; an empty name ends the comparison.
 void compare_with(View& view, const std::string& engine);

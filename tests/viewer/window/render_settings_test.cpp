@@ -16,7 +16,7 @@
 namespace lucarne::viewer {
 namespace {
 
-using namespace test;
+using test::bytes_of, test::eventually, test::lucarne, test::MeasuringWindow, test::Outcome;
 using testing::HasSubstr;
 
 View changed_view() {
@@ -72,7 +72,7 @@ TEST(RenderSettings, ValuesThatNoOptionHasAreRejectedAtTheirPlace) {
 class RenderSettingsCommand : public testing::Test {
  protected:
     void SetUp() override {
-        cache_ = make_cornell(folder_, "20k");
+        cache_ = test::make_cornell(folder_, "20k");
         cornell_ = bytes_of(LUCARNE_SOURCE_DIR "/data/scenes/cornell.json");
     }
     /// Writes Cornell's scene with or without an object `render`.
@@ -91,7 +91,7 @@ class RenderSettingsCommand : public testing::Test {
         EXPECT_EQ(outcome.code, 0) << outcome.output;
         return bytes_of(folder_ / "out.png");
     }
-    const TemporaryFolder folder_;
+    const test::TemporaryFolder folder_;
     std::string cache_, cornell_;
 };
 

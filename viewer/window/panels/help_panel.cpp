@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <array>
-
 #include <imgui.h>
 
 #include "viewer/window/actions/actions.h"
@@ -28,15 +25,6 @@ void row(const char* key, const char* what) {
     ImGui::TextUnformatted(key);
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(what);
-}
-
-/// Draws a warning, wrapped to the window's width.
-void warning(const std::string& text, float width) {
-    ImGui::PushTextWrapPos(width - 4 * ImGui::GetFontSize());
-    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.8f, 0.4f, 1.0f));
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopStyleColor();
-    ImGui::PopTextWrapPos();
 }
 
 }  // namespace
@@ -81,27 +69,6 @@ void draw_about(bool& shown) {
     }
     ImGui::End();
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) shown = false;
-}
-
-void draw_message(const ViewModel& model, bool busy) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const auto left = static_cast<float>(model.view.side_bar.pixels(ImGui::GetFontSize(), size.x));
-    ImGui::SetNextWindowPos(ImVec2((left + size.x) / 2, size.y - 8), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
-    ImGui::SetNextWindowBgAlpha(0.6f);
-    const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                                   ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
-                                   ImGuiWindowFlags_NoNav;
-    const Health& health = model.health;
-    const std::array problems = {&health.device, &health.shaders, &health.picture, &health.nodes};
-    const bool healthy = std::ranges::all_of(problems, [](const auto* problem) { return problem->empty(); });
-    if (model.view.message.empty() && !busy && healthy) return;
-    if (ImGui::Begin("##message", nullptr, flags)) {
-        for (const std::string* problem : problems)
-            if (!problem->empty()) warning(*problem, size.x - left);
-        if (!model.view.message.empty() || busy)
-            ImGui::TextUnformatted(model.view.message.empty() ? "Rendering" : model.view.message.c_str());
-    }
-    ImGui::End();
 }
 
 }  // namespace lucarne::viewer
