@@ -65,6 +65,13 @@ glm::dvec3 world(const ViewAxes& axes, const glm::dvec3& p) {
 
 }  // namespace
 
+std::array<glm::dvec3, 2> widened(const std::array<glm::dvec3, 2>& box, double reach, double least) {
+    const glm::dvec3 low = box[0] - reach, high = box[1] + reach, sides = high - low;
+    if (!(std::max({sides.x, sides.y, sides.z}) < least)) return {low, high};
+    const glm::dvec3 middle = (low + high) / 2.0;
+    return {middle - least / 2, middle + least / 2};
+}
+
 glm::dvec3 fitting_position(std::span<const glm::dvec3> points, const ViewAxes& axes, double vertical_fov,
                             const PictureShape& shape, double span) {
     const Limits limits = limits_of(shape, std::tan(vertical_fov / 2));

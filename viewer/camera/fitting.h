@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -22,6 +23,13 @@ struct PictureShape {
 struct ViewAxes {
     glm::dvec3 right, up, forward;
 };
+
+/// Least side of a box that a camera looks at, m: a single point has no size.
+inline constexpr double kLeastBox = 1;
+
+/// Returns a box with `reach` around it; one whose sides are all shorter than `least` becomes a cube of that
+/// side. World units.
+std::array<glm::dvec3, 2> widened(const std::array<glm::dvec3, 2>& box, double reach, double least);
 
 /// Returns the nearest position from which a perspective camera sees all points in the free part of its
 /// picture, with a small margin, and in its middle. Points that are no numbers do not count. `span` (> 0) is

@@ -12,6 +12,7 @@
 #include "viewer/commands/options/drawing_options.h"
 #include "viewer/commands/options/input_options.h"
 #include "viewer/commands/options/outputs.h"
+#include "viewer/commands/options/shown_site.h"
 #include "viewer/flythrough/path.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
@@ -43,7 +44,7 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     if (options.drawing.scene.empty()) start.scene.look.axes = start.scene.look.scale_bar = true;
     start.mood = loaded.mood;
     start.engine = loaded.engine;
-    start.site = loaded.site ? std::move(*loaded.site) : survey_site(source);
+    start.site = loaded.site ? std::move(*loaded.site) : shown_site(source);
     start.box = start.site.box;
     start.metres_per_unit = source.header().metres_per_unit;
     return start;
@@ -110,7 +111,7 @@ void take_settings(Settings settings, ViewModel& model) {
 Result<void> view(ViewOptions options) {
     LUCARNE_TRY(take_project(options));
     LUCARNE_TRY(take_render_settings(options.drawing));
-    LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
+    LUCARNE_ASSIGN(Drawing drawing, resolve(options.drawing));
     LUCARNE_TRY(check_scene(options));
     if (!options.measurements.empty()) LUCARNE_TRY(load_measurements(options.measurements, std::nullopt));
     if (!options.path.empty()) LUCARNE_TRY(load_path(options.path));
@@ -132,6 +133,8 @@ Result<void> view(ViewOptions options) {
     LoadedSettings kept = load_settings(config_folder());
     if (!kept.problem.empty()) log::warn("{}", kept.problem);
     for (const std::string& path : options.input.paths) kept.settings.opened(absolute_path(path));
+    if (options.drawing.device_memory.empty() && kept.settings.device_memory > 0)
+        drawing.caps.device_memory = static_cast<uint64_t>(kept.settings.device_memory * (1 << 20));
     const ImageSize size =
         options.size_given || !kept.settings.window.width ? drawing.size : kept.settings.window;
     LUCARNE_ASSIGN(const auto window, Window::open(size, "Lucarne"));
@@ -154,8 +157,8 @@ void add_view(CommandLine& line) {
     auto options = std::make_shared<ViewOptions>();
     Arguments command = line.add("view", "Explore caches and scans lit by their own surfaces");
     options->input.required = false;
-    add_input_options(command, options->input);
     add_drawing_options(command, options->drawing);
+    add_input_options(command, options->input);
     command.add("--camera", options->camera, "Start with this camera of the scene");
     command
         .add("--scale", options->drawing.render.scale,

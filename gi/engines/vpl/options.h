@@ -80,7 +80,7 @@ inline constexpr Option<bool> kViewVpls{{
     .kind = OptionKind::flag,
     .key = "view_vpls",
     .label = "VPLs for the view",
-    .help = "Favour VPLs that light the view; --no-view-vpls: do not",
+    .help = "Favour VPLs that light the view",
     .cost =
         "chooses VPLs whose light reaches the picture: far less noise by daylight and in large buildings,\n"
         "for 128 more shadow maps whenever VPLs are made",
@@ -91,7 +91,7 @@ inline constexpr Option<bool> kViewVpls{{
 inline constexpr Option<bool> kReuse{{
     .kind = OptionKind::flag,
     .key = "reuse",
-    .help = "While the camera moves, average with earlier frames; --no-reuse lights each frame by itself",
+    .help = "Average with earlier frames while the camera moves",
     .defaults = {true, true, true},
 }};
 

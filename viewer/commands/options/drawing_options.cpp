@@ -1,6 +1,7 @@
 #include "viewer/commands/options/drawing_options.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "gi/surfels/colouring.h"
 #include "io/core/log.h"
 #include "octree/tree/robust_bounds.h"
+#include "viewer/commands/options/shown_site.h"
 #include "viewer/opening/first_view.h"
 
 namespace lucarne::viewer {
@@ -44,16 +46,25 @@ std::string owners(const gi::OptionInfo& option) {
     return owners == takers ? "" : names + ": ";
 }
 
+/// Returns the help of a flag that switches off what an option's help, an imperative, says.
+std::string negated(std::string_view help) {
+    std::string text = "Do not " + std::string(help);
+    text[7] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[7])));
+    return text;
+}
+
 /// Declares one argument --KEY for each option of each engine.
 void add_engine_options(Arguments& command, gi::EngineSettings& settings) {
     for (const gi::OptionInfo* option : gi::engine_options()) {
-        const std::string name = option->flag_name(), help = owners(*option) + std::string(option->help);
+        const std::string name = option->flag_name();
         if (option->kind == gi::OptionKind::flag) {
             const bool usual = std::get<bool>(option->defaults[size_t(gi::Effort::interactive)]);
+            const std::string does = usual ? negated(option->help) : std::string(option->help);
             command.flag(
-                name, [&settings, option, usual] { settings.set(*option, !usual); }, help);
+                name, [&settings, option, usual] { settings.set(*option, !usual); }, owners(*option) + does);
             continue;
         }
+        const std::string help = owners(*option) + std::string(option->help);
         const auto take = [&settings, option](const std::string& text) -> std::optional<std::string> {
             auto value = gi::parse_option(*option, text);
             if (!value) return value.error().why;
@@ -139,6 +150,14 @@ void add_limits(Arguments& command, DrawingOptions& options) {
                  "Do not load nodes ahead of a moving camera (for measurements)");
 }
 
+/// Finds wrong values of options that change the scene, which is not loaded yet.
+Result<void> check_names(const DrawingOptions& options) {
+    gi::Scene scene;
+    if (!options.scene.empty()) scene.comparison.emplace();  // it may have one
+    LUCARNE_TRY(apply(options.look, scene.look));
+    return apply(options.light, scene);
+}
+
 }  // namespace
 
 void add_drawing_options(Arguments& command, DrawingOptions& options) {
@@ -160,10 +179,6 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
         .type_name("NAME");
     command.add("--size", options.size, "Size of the picture in pixels").show_default().type_name("WxH");
     {
-        const ArgumentGroup group(command, "Engines");
-        add_engine_options(command, options.render.options);
-    }
-    {
         const ArgumentGroup group(command, "Points and colours");
         add_look_options(command, options.look);
     }
@@ -173,6 +188,10 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
         add_light_options(command, options.light);
     }
     add_limits(command, options);
+    {
+        const ArgumentGroup group(command, "Engines");
+        add_engine_options(command, options.render.options);
+    }
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names() + "\nMoods:" + mood_names());
 }
 
@@ -215,6 +234,7 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     }
     drawing.caps.prefetch = !options.no_prefetch;
     LUCARNE_TRY(gi::find_engine(options.render.engine));
+    LUCARNE_TRY(check_names(options));
     apply(options.render, drawing.preset.engine);
     if (!options.points.empty()) {
         LUCARNE_ASSIGN(const uint64_t points, parse_count("--points", options.points));
@@ -243,7 +263,7 @@ Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree:
             scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
     }
     if (options.scene.empty() || !options.mood.empty()) {
-        const Site& site = loaded.site.emplace(survey_site(source));
+        const Site& site = loaded.site.emplace(shown_site(source));
         if (!options.mood.empty()) {
             LUCARNE_ASSIGN(loaded.mood, find_mood(options.mood));
             const std::string_view engine = engine_of(*loaded.mood, site.kind);
