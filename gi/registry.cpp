@@ -15,7 +15,7 @@ Result<const EngineEntry*> find_engine(std::string_view name) {
         if (entry.info.name == name) return &entry;
         names.push_back(entry.info.name);
     }
-    return bad_arguments("engine '" + std::string(name) + "'", "is unknown", advice(name, names));
+    return bad_arguments("", fmt::format("unknown engine '{}'", name), advice(name, names));
 }
 
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name) {

@@ -12,8 +12,6 @@ int main(int argc, char** argv) {
     // Writing beyond `ulimit -f` then fails with an error, as on a full disk, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     handle_interrupts();
-    const auto declare = [](viewer::CommandLine& line) {
-        for (const auto add : viewer::commands()) add(line);
-    };
+    const auto declare = [](viewer::CommandLine& line) { viewer::add_commands(line); };
     return viewer::run_program({.declare = declare}, argc, argv);
 }

@@ -15,7 +15,7 @@ namespace lucarne::test {
 /// Runs a command in this program, which contains the added engines.
 inline Result<void> run(const std::vector<std::string>& arguments) {
     viewer::CommandLine line("lucarne", "");
-    for (const auto add : viewer::commands()) add(line);
+    viewer::add_commands(line);
     std::vector<std::string> words = {"lucarne"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;

@@ -1,6 +1,7 @@
 #include "viewer/commands/commands.h"
 
 #include <array>
+#include <vector>
 
 namespace lucarne::viewer {
 
@@ -19,11 +20,20 @@ void add_verify(CommandLine& line);
 void add_view(CommandLine& line);
 void add_voxelize(CommandLine& line);
 
-std::span<const AddCommand> commands() {
-    static constexpr std::array<AddCommand, 14> kAll = {
-        add_view,   add_convert, add_render, add_fly,     add_generate, add_info,    add_verify,
-        add_export, add_compare, add_delete, add_compact, add_measure,  add_prepare, add_voxelize};
-    return kAll;
+void add_commands(CommandLine& line) {
+    struct Group {
+        const char* title;
+        std::vector<AddCommand> commands;
+    };
+    const std::array groups = {
+        Group{"Look", {add_view, add_render, add_fly, add_prepare}},
+        Group{"Scans and caches",
+              {add_convert, add_info, add_export, add_delete, add_compact, add_verify, add_voxelize}},
+        Group{"Measure and compare", {add_measure, add_compare, add_generate}}};
+    for (const Group& group : groups) {
+        line.begin_group(group.title);
+        for (const AddCommand add : group.commands) add(line);
+    }
 }
 
 }  // namespace lucarne::viewer

@@ -212,7 +212,8 @@ Result<void> convert(ConvertOptions options) {
                              "a cache is named .luc; lucarne export writes scans");
     if (const auto extension = std::filesystem::path(output).extension();
         !options.append && !extension.empty() && extension != ".luc")
-        return bad_arguments(output, "is no name of a cache", "name it .luc");
+        return bad_arguments(output, fmt::format("cannot write '{}'", extension.string()),
+                             "name the cache .luc");
     LUCARNE_ASSIGN(const ScanList list, expand_folders(options.inputs, options.read));
     options.inputs = list.files;
     LUCARNE_TRY(check_outputs({options.append ? "" : output, options.json}, build.overwrite, options.inputs));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,13 +12,15 @@
 
 namespace lucarne::viewer {
 
-/// Returns the index of `name` in `names`. Errors (ErrorKind::arguments): `name` is not among them; the
-/// message lists `names`.
+/// Returns the index of `name`, the value of `option`, in `names`. Errors (ErrorKind::arguments): `name` is
+/// not among them; the message lists `names`.
 inline Result<size_t> find_name(std::string_view option, const std::string& name,
                                 std::span<const std::string_view> names) {
     for (size_t i = 0; i < names.size(); ++i)
         if (names[i] == name) return i;
-    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name), advice(name, names));
+    std::string kind(option.substr(option.find_first_not_of('-')));
+    std::ranges::replace(kind, '-', ' ');
+    return bad_arguments("", fmt::format("unknown {} '{}'", kind, name), advice(name, names));
 }
 
 }  // namespace lucarne::viewer

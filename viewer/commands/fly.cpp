@@ -227,11 +227,11 @@ Result<void> compare(const FlyOptions& options) {
 void add_fly(CommandLine& line) {
     auto options = std::make_shared<FlyOptions>();
     Arguments command = line.add("fly", "Fly along a camera path and measure it, or compare two reports");
-    add_input_options(command, options->input);
     command.add("--path", options->path, "The camera path (data/README.md, Flythroughs)");
     command.add("-o,--output", options->report, "The report, JSON");
     command.add("--html", options->html, "Also write the report as a page with plots").type_name("FILE");
     add_drawing_options(command, options->drawing);
+    add_input_options(command, options->input);
     command.find("--engine").description("Method of lighting; several make one flight each: vpl,direct");
     const Argument wait =
         command.flag("--wait", options->wait,

@@ -58,8 +58,8 @@ void add_prepare(CommandLine& line) {
     auto options = std::make_shared<PrepareOptions>();
     Arguments command =
         line.add("prepare", "Compute in advance what an engine needs, and keep it beside the cache");
-    add_input_options(command, options->input);
     add_drawing_options(command, options->drawing);
+    add_input_options(command, options->input);
     command.add("--json", options->json, "Write the file's name and the time as JSON").type_name("FILE");
     command.flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
     command.run([options] { return prepare(*options); });

@@ -245,7 +245,6 @@ Result<void> render(RenderOptions options) {
 void add_render(CommandLine& line) {
     auto options = std::make_shared<RenderOptions>();
     Arguments command = line.add("render", "Render one picture without a window");
-    add_input_options(command, options->input);
     command.flag("--first", options->first,
                  "For scans without a cache: render at once from a sample of the points; "
                  "nothing is converted or kept");
@@ -254,6 +253,7 @@ void add_render(CommandLine& line) {
         .type_name("FILE");
     command.add("--camera", options->camera, "A camera of the scene; by default the first").type_name("NAME");
     add_drawing_options(command, options->drawing);
+    add_input_options(command, options->input);
     command.add("--frames", options->frames, "Number of frames to average")
         .range(1, 1'000'000)
         .type_name("N");

@@ -83,13 +83,51 @@ TEST(CommandHelp, ListsEverydayOptionsFirstAndTheOthersUnderTitles) {
     const test::Outcome ran = test::lucarne("render --help");
     EXPECT_EQ(ran.code, 0);
     size_t last = 0;
-    for (const char* part :
-         {"--output", "--mood", "--engine", "--size", "\nReading scans:", "--columns",
-          "\nEngines:", "--bounces", "\nPoints and colours:", "--clip-box",
-          "\nExposure, albedo and comparison:", "--exposure", "\nDetail and memory:", "--memory"}) {
+    for (const char* part : {"--mood", "--engine", "--size", "--output", "\nPoints and colours:",
+                             "--clip-box", "\nExposure, albedo and comparison:", "--exposure",
+                             "\nDetail and memory:", "--memory", "\nEngines:", "--bounces",
+                             "  Do not favour VPLs that light the view", "\nReading scans:", "--columns"}) {
         const size_t at = ran.output.find(part, last);
         ASSERT_NE(at, std::string::npos) << part << " is missing, or above what it should follow";
         last = at;
+    }
+}
+
+TEST(CommandHelp, ListsCommandsInGroups) {
+    const std::string help = test::lucarne("--help").output;
+    size_t last = 0;
+    for (const char* part : {"\nLook:", "\n  view ", "\n  render ", "\nScans and caches:", "\n  convert ",
+                             "\nMeasure and compare:", "\n  generate "}) {
+        const size_t at = help.find(part, last);
+        ASSERT_NE(at, std::string::npos) << part << " in " << help;
+        last = at;
+    }
+}
+
+TEST(CommandErrors, WrongNamesAreFoundBeforeAnythingIsOpened) {
+    const test::TemporaryFolder folder;
+    const std::string output = folder / "never.png";
+    const auto refused = [&](const std::string& options) {
+        // The scan is not there, which would be said first if it were opened.
+        const test::Outcome ran = test::lucarne("render " + (folder / "no.las") + " -o " + output + options);
+        EXPECT_EQ(ran.code, 2) << ran.output;
+        return ran.output;
+    };
+    EXPECT_EQ(refused(" --engine vlp").find("lucarne: unknown engine 'vlp'; did you mean vpl?"), 0u);
+    EXPECT_EQ(refused(" --tone-map filmc").find("lucarne: unknown tone map 'filmc'; did you mean filmic?"),
+              0u);
+    EXPECT_EQ(refused(" --colour elevatoin").find("lucarne: unknown colour 'elevatoin'; did you mean elev"),
+              0u);
+    EXPECT_EQ(refused(" --beside vlp").find("lucarne: unknown engine 'vlp'"), 0u);
+    EXPECT_NE(refused(" --luminance 3").find("is not a range of luminances"), std::string::npos);
+}
+
+TEST(CommandErrors, AMissingInputIsCalledSo) {
+    for (const std::string command : {"render -o a.png", "render", "convert -o a.luc", "info"}) {
+        const test::Outcome ran = test::lucarne(command);
+        EXPECT_EQ(ran.code, 2);
+        const std::string name = command.substr(0, command.find(' '));
+        EXPECT_EQ(ran.output, "lucarne: no input given; see lucarne " + name + " --help\n");
     }
 }
 

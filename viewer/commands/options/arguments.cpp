@@ -49,6 +49,14 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
+/// Returns whether a parsed command needs scans and has none.
+bool lacks_input(const CLI::App& command) {
+    return std::ranges::any_of(command.get_options(), [](const CLI::Option* option) {
+        const std::string name = option->get_name(true);
+        return (name == "INPUT" || name == "inputs") && option->get_required() && option->count() == 0;
+    });
+}
+
 }  // namespace
 
 Argument& Argument::required(bool is_required) {
@@ -213,7 +221,14 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
 CommandLine::~CommandLine() = default;
 
 Arguments CommandLine::add(const std::string& name, const std::string& help) {
-    return commands_.emplace_back(*app_->add_subcommand(name, help));
+    return commands_.emplace_back(*app_->add_subcommand(name, help)->group(group_));
+}
+
+/// Returns where the help of the parsed command, or of the program, is.
+std::string CommandLine::see_help() const {
+    for (const Arguments& command : commands_)
+        if (*command.app_) return fmt::format("see lucarne {} --help", command.app_->get_name());
+    return "see lucarne --help";
 }
 
 Result<std::function<Result<void>()>> CommandLine::parse(int argc, char** argv) {
@@ -237,14 +252,17 @@ Result<std::function<Result<void>()>> CommandLine::parse(int argc, char** argv) 
     try {
         app_->parse(words);
     } catch (const CLI::ExtrasError& error) {
-        std::string remedy = "see lucarne --help";
+        std::string remedy = see_help();
         for (const Arguments& command : commands_) {
             if (!*command.app_) continue;
-            remedy = fmt::format("see lucarne {} --help", command.app_->get_name());
             const auto extras = command.app_->remaining();
             if (!extras.empty()) remedy = did_you_mean(extras[0], option_names(*command.app_), remedy);
         }
         return bad_arguments("arguments", error.what(), remedy);
+    } catch (const CLI::RequiredError& error) {
+        const bool input = std::ranges::any_of(
+            commands_, [](const Arguments& command) { return *command.app_ && lacks_input(*command.app_); });
+        return bad_arguments("", input ? "no input given" : error.what(), see_help());
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() != 0) return bad_arguments("arguments", error.what(), "see lucarne --help");
         app_->exit(error);  // prints the help

@@ -112,6 +112,8 @@ class CommandLine {
     ~CommandLine();
 
     Arguments add(const std::string& name, const std::string& help);
+    /// The help lists the commands that are added from now on under this title.
+    void begin_group(const std::string& title) { group_ = title; }
     /// Parses the command line and returns the action of the chosen command. A file, a folder or an option in
     /// the place of the command, or nothing at all, stands for `view`. The action is empty if help or the
     /// version was asked for; it has been printed then. Errors (ErrorKind::arguments): the arguments are
@@ -119,8 +121,11 @@ class CommandLine {
     Result<std::function<Result<void>()>> parse(int argc, char** argv);
 
  private:
+    std::string see_help() const;
+
     std::unique_ptr<CLI::App> app_;
     std::vector<Arguments> commands_;
+    std::string group_ = "Commands";
 };
 
 }  // namespace lucarne::viewer
