@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/files/json.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/text.h"
 #include "io/formats/copc/copc.h"
@@ -25,7 +26,8 @@ struct Foreign {
 };
 Foreign foreign_format(std::string_view head, uint64_t file_bytes) {
     constexpr std::string_view kConvert = "convert it to LAS or PLY";
-    if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return {"a picture", kConvert};
+    if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff"))
+        return {"an image, not a scan", kConvert};
     if (head.starts_with("\x1f\x8b")) return {"compressed by gzip", "unpack it with gunzip"};
     if (head.starts_with("PK\x03\x04")) return {"a zip archive", "unpack it"};
     if (head.starts_with("7z\xbc\xaf\x27\x1c")) return {"a 7z archive", "unpack it"};
@@ -69,6 +71,13 @@ Result<Candidates> candidates_for(const ByteSource& file) {
     return found;
 }
 
+/// Returns why a file named .json is no scan.
+tl::unexpected<Error> json_error(const std::filesystem::path& path) {
+    const auto document = load_json(path);
+    if (!document) return tl::make_unexpected(document.error());
+    return rejected(path.string(), "is no scan", "give a scene to --scene; lucarne view opens projects");
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
@@ -87,8 +96,7 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
     const bool rows = found.rows();
     const Foreign foreign = told && !rows ? Foreign{} : foreign_format(head, file->size());
     if (!foreign.what.empty())
-        return rejected(path.string(), fmt::format("is {}, which cannot be read", foreign.what),
-                        std::string(foreign.todo));
+        return rejected(path.string(), fmt::format("is {}", foreign.what), std::string(foreign.todo));
     if (named && (!told || (rows && options.columns.empty() && named->open != told->open))) {
         auto scan = named->by_name ? named->open(file, options)
                                    : rejected(path.string(), fmt::format("is named {} and has no such header",
@@ -97,7 +105,12 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
             scan.error().todo = "if it holds rows of numbers, say what they are with --columns";
         return scan;
     }
-    if (told) return told->open(file, options);
+    if (told) {
+        auto scan = told->open(file, options);
+        if (!scan && rows && lower_extension(path) == ".json") return json_error(path);
+        return scan;
+    }
+    if (lower_extension(path) == ".json") return json_error(path);
     return rejected(path.string(), "has an unrecognised format", "convert it to LAS or PLY");
 }
 
@@ -123,9 +136,8 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
                       scaled);
         return format->create(path, schema, info, options);
     }
-    return bad_arguments(
-        path.string(), fmt::format("cannot be exported as '{}'", extension),
-        "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");
+    return bad_arguments(path.string(), fmt::format("cannot export '{}'", extension),
+                         "use .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");
 }
 
 }  // namespace lucarne::io

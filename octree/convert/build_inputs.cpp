@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/formats/far_apart.h"
 #include "io/formats/merged_info.h"
 #include "io/formats/scan.h"
 #include "octree/cache/format.h"
@@ -89,7 +90,8 @@ void warn_of_differences(const Unifier& inputs) {
 }
 
 void warn_of_differences(std::span<const io::ScanInfo> scans) {
-    for (const std::string& differ : {io::different_systems(scans), io::different_extras(scans)})
+    for (const std::string& differ :
+         {io::different_systems(scans), io::different_extras(scans), io::far_apart(scans)})
         if (!differ.empty()) log::warn("{}", differ);
 }
 

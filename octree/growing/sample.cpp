@@ -222,7 +222,7 @@ Result<QuickSample> take_sketch(const Unifier& inputs, uint64_t most, uint64_t r
     }
     if (!broken.empty() && (inputs.inputs() == 1 || sample.records.empty()))
         return tl::unexpected(std::move(broken.front()));
-    for (const Error& error : broken) log::warn("{}; it is left out of the first pictures", error.line());
+    for (const Error& error : broken) log::warn("{}; skipped in the first pictures", error.line());
     return with_positions(inputs, std::move(sample));
 }
 

@@ -6,7 +6,9 @@
 
 #include <glm/common.hpp>
 
+#include "io/core/log.h"
 #include "io/core/random.h"
+#include "io/formats/far_apart.h"
 #include "octree/tree/area_floor.h"
 
 namespace lucarne::octree {
@@ -116,6 +118,18 @@ class JoinedSource final : public NodeSource {
     std::vector<Part> parts_;  ///< sorted by first_node
 };
 
+/// Returns where the sources lie, m.
+std::vector<io::PlacedScan> placed(const Sources& sources) {
+    std::vector<io::PlacedScan> all;
+    for (const auto& source : sources) {
+        const SourceHeader& header = source->header();
+        if (header.points == 0) continue;
+        all.push_back({header.scans.empty() ? "a scan" : header.scans.front().path,
+                       {header.min * header.metres_per_unit, header.max * header.metres_per_unit}});
+    }
+    return all;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const NodeSource>> join_sources(Sources sources) {
@@ -124,6 +138,7 @@ Result<std::shared_ptr<const NodeSource>> join_sources(Sources sources) {
     size_t nodes = 0;
     for (const auto& source : sources) nodes += source->nodes().size();
     if (nodes >= kNoNode) return rejected("sources", "they have more nodes together than can be numbered");
+    if (const std::string far = io::far_apart(placed(sources)); !far.empty()) log::warn("{}", far);
     return std::make_shared<const JoinedSource>(std::move(sources), nodes);
 }
 

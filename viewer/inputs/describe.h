@@ -20,7 +20,7 @@ nlohmann::ordered_json scan_json(const io::ScanInfo& info, const io::Schema& sch
                                  const io::Contents* contents);
 
 nlohmann::ordered_json losses_json(const io::Losses& losses);
-/// "12 points whose state is invalid, 3 images, which are listed but not read".
+/// "12 points whose state is invalid, 3 images ignored".
 std::string losses_text(const io::Losses& losses);
 
 }  // namespace lucarne::viewer

@@ -66,7 +66,7 @@ Result<Scans> open_scans(const InputOptions& options,
     for (const auto& file : files) {
         auto scan = io::open_scan(file, options.read);
         if (!scan && leave_out && files.size() > 1 && scan.error().kind == ErrorKind::input_rejected) {
-            log::warn("{}; it is left out", scan.error().line());
+            log::warn("{}; skipped", scan.error().line());
             first_error = first_error.value_or(scan.error());
             continue;
         }

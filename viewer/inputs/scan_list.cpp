@@ -108,7 +108,7 @@ Result<ScanList> expand_folders(const std::vector<std::string>& inputs, const io
     }
     list.files = once_each(list.files);
     if (list.files.empty() && list.problems.size() == 1) return tl::unexpected(list.problems.front());
-    for (const Error& problem : list.problems) log::warn("{}; it is left out", problem.line());
+    for (const Error& problem : list.problems) log::warn("{}; skipped", problem.line());
     if (list.files.empty()) return rejected("inputs", "none of them contains a scan");
     return list;
 }
@@ -124,7 +124,7 @@ Result<void> SetAside::take(Error error, std::vector<std::string>& inputs) {
         return tl::unexpected(std::move(error));
     error = io::with_salvage_advice(std::move(error), *broken, options_);
     if (inputs_ < 2) return tl::unexpected(std::move(error));
-    log::warn("{}; it is left out", error.line());
+    log::warn("{}; skipped", error.line());
     errors_.push_back(std::move(error));
     inputs.erase(broken);
     return {};

@@ -98,7 +98,7 @@ class E57Source final : public PointSource {
         set_unit(info_, options, 1.0);  // E57 is in metres by definition
         info_.color_bits = e57_.layout.color_bits;
         info_.losses = e57_.losses;
-        add_loss(info_.losses, "images, which are listed but not read", document.images.size());
+        add_loss(info_.losses, "images ignored", document.images.size());
         const auto system = wkt_system(document.coordinate_system);
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;

@@ -45,7 +45,7 @@ TEST(Counted, OneIsSingular) {
               "1 extended variable length record that is not there");
     EXPECT_EQ(counted(1, "points that are not there: the file ends before them"),
               "1 point that is not there: the file ends before it");
-    EXPECT_EQ(counted(1, "images, which are listed but not read"), "1 image, which is listed but not read");
+    EXPECT_EQ(counted(1, "images ignored"), "1 image ignored");
     EXPECT_EQ(counted(1, "entries of 'faces', which are not read"), "1 entry of 'faces', which is not read");
     EXPECT_EQ(counted(1, "faces that make no sense"), "1 face that makes no sense");
     EXPECT_EQ(counted(2, "faces that make no sense"), "2 faces that make no sense");

@@ -85,11 +85,23 @@ TEST_F(Registry, TheErrorIsThatOfTheFormatThatTheExtensionNames) {
     EXPECT_THAT(open("a.pcd", zeros).error().line(), HasSubstr("PCD"));
     EXPECT_THAT(open("a.pcd", "# nothing\n").error().line(), HasSubstr("its PCD header ends without"));
     EXPECT_THAT(open("a.dat", zeros).error().line(), HasSubstr("has an unrecognised format"));
-    EXPECT_THAT(open("a.las", "\x89PNG" + zeros).error().line(), HasSubstr("is a picture"));
+    EXPECT_THAT(open("a.las", "\x89PNG" + zeros).error().line(), HasSubstr("is an image, not a scan"));
     EXPECT_THAT(open("a.obj", zeros).error().line(), HasSubstr("is no OBJ"));
     EXPECT_THAT(open("a.obj", "hello, this is no mesh\n").error().line(), HasSubstr("is no OBJ"));
     EXPECT_THAT(open("a.obj", "1 2 3\n4 5 6\n").error().line(),
                 HasSubstr("if it holds rows of numbers, say what they are with --columns"));
+}
+
+TEST_F(Registry, OfAFileNamedJsonTheMistakeIsTold) {
+    EXPECT_THAT(open("a.json", "{\"version\": 1, \"scans\": [\"a").error().line(),
+                HasSubstr("a.json: line 1, column "));
+    EXPECT_THAT(open("a.json", "{\"version\": \xff\xfe}").error().line(),
+                HasSubstr("a.json: line 1, column "));
+    EXPECT_THAT(open("a.json", std::string(5000, '[')).error().line(), HasSubstr("a.json: "));
+    EXPECT_THAT(open("a.json", "{}").error().line(), HasSubstr("a.json: is no scan"));
+    for (const std::string& text : {std::string("{\"a"), std::string(5000, '['), std::string(200, '\0')})
+        EXPECT_THAT(open("a.json", text).error().line(), ::testing::Not(HasSubstr("unrecognised"))) << text;
+    EXPECT_TRUE(open("a.json", "1 2 3\n4 5 6\n")) << "rows of numbers are a scan, whatever their name";
 }
 
 TEST(UniqueName, HasTheFirstNumberThatIsFree) {
