@@ -1,5 +1,6 @@
 #include "viewer/project/project.h"
 
+#include <algorithm>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -124,6 +125,15 @@ Result<Project> read_project(const fs::path& file, std::optional<double> metres_
     return parse_project(text, file.string(), file.parent_path(), metres_per_unit);
 }
 
+namespace {
+
+/// Whether a path has bytes that no scan's path has. The system would end the path at a zero byte.
+bool has_control_bytes(const std::string& path) {
+    return std::ranges::any_of(path, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; });
+}
+
+}  // namespace
+
 FoundScans find_scans(const ScanGroups& scans, const fs::path& folder) {
     FoundScans all;
     for (const auto& group : scans) {
@@ -131,7 +141,9 @@ FoundScans find_scans(const ScanGroups& scans, const fs::path& folder) {
         for (const std::string& scan : group) {
             std::error_code error;
             const fs::path path(scan), moved = folder / path.filename();
-            if (path.is_absolute() && fs::exists(path, error))
+            if (has_control_bytes(scan))
+                all.missing.push_back(scan);
+            else if (path.is_absolute() && fs::exists(path, error))
                 found.push_back(scan);
             else if (path.has_filename() && fs::exists(moved, error))
                 found.push_back(moved.string());

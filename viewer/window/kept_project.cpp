@@ -110,6 +110,10 @@ std::string KeptProject::text(const std::filesystem::path& folder) {
 }
 
 void KeptProject::follow(bool changed) {
+    {
+        const std::lock_guard lock(outcome_->mutex);
+        if (!outcome_->problem.empty()) model_.view.message = std::exchange(outcome_->problem, {});
+    }
     changed_ |= changed;
     if (file_.empty() || !changed_ || Clock::now() - looked_ < kEvery) return;
     looked_ = Clock::now();
@@ -120,7 +124,8 @@ void KeptProject::follow(bool changed) {
         "your work", [file = file_, now = std::move(now)] { return write(file, now); },
         [outcome = outcome_](const Result<void>& done) {
             const std::lock_guard lock(outcome->mutex);
-            if (!done && !std::exchange(outcome->failed, true)) log::warn("{}", done.error().line());
+            if (!done && !std::exchange(outcome->failed, true))
+                log::warn("{}", outcome->problem = "your work is not kept: " + done.error().line());
             if (done) outcome->failed = false;
         });
 }

@@ -65,6 +65,7 @@ class KeptProject {
     struct Outcome {
         std::mutex mutex;
         bool failed = false;
+        std::string problem;  ///< to be shown once
     };
     std::shared_ptr<Outcome> outcome_ = std::make_shared<Outcome>();
     JobQueue writer_;

@@ -161,6 +161,20 @@ TEST_F(ProjectFile, FindsItsScansWhereTheyWereOrBesideIt) {
     EXPECT_EQ(missing_text("p.json", {}), "");
 }
 
+TEST_F(ProjectFile, CountsScansWithImpossiblePathsAsMissing) {
+    const std::string here = folder_ / "a.las", zero = here + std::string(1, '\0') + "b", bell = "/a\x07.las";
+    std::ofstream{here} << "scan";
+    const FoundScans scans = find_scans({{zero, here}, {bell}}, folder_.path());
+    EXPECT_EQ(scans.found, (ScanGroups{{here}}));
+    EXPECT_EQ(scans.missing, (std::vector<std::string>{zero, bell}));
+    Project project = work();
+    project.scans = {{here}, {zero}};
+    const auto read = parse_project(project_text(project, 1, folder_.path()), "p.json", folder_.path(), 1.0);
+    ASSERT_TRUE(read) << read.error().line();
+    EXPECT_EQ(read->scans, project.scans) << "one path refuses no project";
+    EXPECT_EQ(missing_text("p.json", scans.missing).find('\0'), std::string::npos);
+}
+
 TEST_F(ProjectFile, IsLockedByOneAtATime) {
     ProjectLock first, second;
     EXPECT_EQ(first.take(file_), "");
