@@ -8,6 +8,7 @@
 #include "gi/shared/surfel_code.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -23,7 +24,7 @@ bool drag_point(const char* label, glm::dvec3& point, double scene_size) {
 
 bool edit_angle(const char* label, double& radians, float least, float most) {
     float degrees = static_cast<float>(radians * 180 / std::numbers::pi);
-    if (!ImGui::SliderFloat(label, &degrees, least, most, "%.2f degrees", ImGuiSliderFlags_AlwaysClamp))
+    if (!ImGui::SliderFloat(label, &degrees, least, most, "%.1f°", ImGuiSliderFlags_AlwaysClamp))
         return false;
     radians = degrees * std::numbers::pi / 180;
     return true;
@@ -41,7 +42,7 @@ void dye(gi::SceneLight& light, const glm::dvec3& colour) {
     if (then > 0) light.strength = colour * ((now > 0 ? now : 1.0) / then);
 }
 
-/// Edits the light's colour as the screen shows it, or as linear values.
+/// Edits the light's colour as the screen shows it, or by its temperature.
 bool edit_colour(gi::SceneLight& light) {
     const double most = std::max({light.strength.x, light.strength.y, light.strength.z});
     float shown[3];
@@ -52,12 +53,6 @@ bool edit_colour(gi::SceneLight& light) {
         const glm::dvec3 linear(gi::srgb_to_linear(shown[0]), gi::srgb_to_linear(shown[1]),
                                 gi::srgb_to_linear(shown[2]));
         dye(light, linear);
-        changed = true;
-    }
-    float linear[3];
-    for (int i = 0; i < 3; ++i) linear[i] = most > 0 ? static_cast<float>(light.strength[i] / most) : 1.0f;
-    if (ImGui::DragFloat3("Linear", linear, 0.005f, 0, 1, "%.3f", ImGuiSliderFlags_AlwaysClamp)) {
-        dye(light, {linear[0], linear[1], linear[2]});
         changed = true;
     }
     float kelvin = static_cast<float>(gi::black_body_temperature(light.strength));
@@ -125,17 +120,17 @@ bool edit_shape(gi::SceneLight& light, double scene_size) {
 }
 
 bool edit_light(const Lighting& model, gi::SceneLight& light) {
+    const bool sun = light.kind == gi::LightKind::directional;
+    bool changed = edit_strength(model, light);
+    if (sun) draw_sun(model);
+    if (!fold("More")) return changed;
     if (ImGui::InputText("Name", &light.name)) model.view.shown_changed();
-    bool changed = false;
-    if (light.kind == gi::LightKind::directional) {
-        draw_sun(model);
-    } else {
+    if (!sun) {
         changed |= drag_point("Position", light.position, model.view.scene_size);
         if (light.kind != gi::LightKind::point)
             changed |= drag_point("Target", light.target, model.view.scene_size);
     }
-    changed |= edit_shape(light, model.view.scene_size);
-    return edit_strength(model, light) || changed;
+    return edit_shape(light, model.view.scene_size) || changed;
 }
 
 void draw_list(const Lighting& model) {

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-bool edit_degrees(const char* label, double& value, double least, double most) {
-    return ImGui::DragScalar(label, ImGuiDataType_Double, &value, 0.1f, &least, &most, "%.4f",
+bool edit_degrees(const char* label, double& value, double least, double most, const char* format = "%.1f°") {
+    return ImGui::DragScalar(label, ImGuiDataType_Double, &value, 0.1f, &least, &most, format,
                              ImGuiSliderFlags_AlwaysClamp);
 }
 
@@ -141,14 +141,15 @@ void draw_sun(const Lighting& model) {
     if (ImGui::Checkbox("By place and time", &by_time))
         set_sun(model, by_time ? std::optional(gi::SunMoment{}) : std::nullopt);
     if (light.sun) {
-        bool changed = edit_degrees("Latitude", light.sun->latitude, -90, 90);
-        changed |= edit_degrees("Longitude", light.sun->longitude, -180, 180);
+        bool changed = edit_degrees("Latitude", light.sun->latitude, -90, 90, "%.4f°");
+        changed |= edit_degrees("Longitude", light.sun->longitude, -180, 180, "%.4f°");
         changed |= edit_moment(light.sun->time);
         changed |= edit_degrees("True north", light.sun->north, -360, 360);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("degrees from the scan's +y, clockwise");
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("direction of true north, clockwise from the scan's +y");
         if (changed) set_sun(model, light.sun);
         const gi::SolarPosition at = gi::solar_position(*light.sun);
-        ImGui::Text("azimuth %.2f, elevation %.2f%s", at.azimuth, at.elevation,
+        ImGui::Text("azimuth %.1f°, elevation %.1f°%s", at.azimuth, at.elevation,
                     at.elevation > 0 ? "" : ": it has set");
         return;
     }
@@ -195,7 +196,7 @@ void draw_sky(const Lighting& model) {
         else
             ImGui::TextWrapped("%s", model.view.scene.environment->image.c_str());
         float degrees = static_cast<float>(model.view.scene.environment->rotation / kDegree);
-        if (ImGui::SliderFloat("Rotation", &degrees, -180, 180, "%.1f degrees"))
+        if (ImGui::SliderFloat("Rotation", &degrees, -180, 180, "%.1f°"))
             change_sky(model,
                        [&](gi::Environment& sky) { sky.rotation = static_cast<float>(degrees * kDegree); });
     }

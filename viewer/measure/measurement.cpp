@@ -12,13 +12,17 @@ namespace {
 using glm::dvec3;
 
 constexpr std::array<MeasureKindInfo, 7> kKinds = {{
-    {"point", "Point", "a point", 1, 1},
-    {"distance", "Distance", "two points", 2, 2},
-    {"height", "Height", "the lower and the upper point", 2, 2},
-    {"angle", "Angle", "three points; the angle is at the second", 3, 3},
-    {"area", "Area", "the corners in turn; Enter ends", 3, kMostMeasuredPoints},
-    {"path", "Path", "the points in turn; Enter ends", 2, kMostMeasuredPoints},
-    {"section", "Section", "the two ends of the line to cut along", 2, 2},
+    {"point", "Point", "a point", "the exact coordinates and all attributes of a point", 1, 1},
+    {"distance", "Distance", "two points", "the length between two points, along the map and along each axis",
+     2, 2},
+    {"height", "Height", "the lower and the upper point", "how much higher the second point lies", 2, 2},
+    {"angle", "Angle", "three points; the angle is at the second", "the angle between two directions", 3, 3},
+    {"area", "Area", "the corners in turn; Enter ends",
+     "the area and the perimeter of a polygon, in its plane and on the map", 3, kMostMeasuredPoints},
+    {"path", "Path", "the points in turn; Enter ends", "the length of a line through several points", 2,
+     kMostMeasuredPoints},
+    {"section", "Section", "the two ends of the line to cut along",
+     "a cut through the scan: its points within the thickness, seen from the side", 2, 2},
 }};
 
 double on_map(const dvec3& v) {

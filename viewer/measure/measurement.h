@@ -16,6 +16,7 @@ struct MeasureKindInfo {
     std::string_view name;       ///< name in files: "distance"
     std::string_view title;      ///< "Distance"
     std::string_view hint;       ///< tells the user which points to click
+    const char* help;            ///< what is measured
     size_t least = 1, most = 1;  ///< points
 };
 inline constexpr size_t kMostMeasuredPoints = 1000;  ///< limit for one measurement

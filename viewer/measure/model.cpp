@@ -12,7 +12,7 @@ namespace lucarne::viewer {
 void MeasureModel::start(MeasureKind kind) {
     tool = kind;
     pending.clear();
-    message = fmt::format("{}: click {}", info_of(kind).title, info_of(kind).hint);
+    message = prompt = fmt::format("{}: click {}", info_of(kind).title, info_of(kind).hint);
 }
 
 void MeasureModel::take(ExactPoint point) {
@@ -20,7 +20,7 @@ void MeasureModel::take(ExactPoint point) {
     pending.push_back(std::move(point));
     if (pending.size() < info_of(*tool).most) {
         const auto& [x, y, z] = pending.back().coordinates;
-        message = fmt::format("{} {} {}", x, y, z);
+        message = prompt = fmt::format("{} {} {}", x, y, z);
     } else {
         finish();
     }
@@ -43,6 +43,7 @@ void MeasureModel::drop_last() {
 }
 
 void MeasureModel::stop() {
+    if (message == prompt) message.clear();
     tool.reset();
     pending.clear();
 }

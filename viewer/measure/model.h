@@ -37,6 +37,7 @@ struct MeasureModel {
     // Results of the session.
     std::shared_ptr<const Section> section;  ///< the selected section, as far as it has been read
     std::string message;                     ///< message to be shown once
+    std::string prompt;                      ///< what the tool has said last; it ends with the tool
 
     void start(MeasureKind kind);
     /// Passes a picked point to the tool, which completes the measurement or waits for more points.

@@ -6,20 +6,25 @@
 #include <imgui_stdlib.h>
 
 #include "viewer/measure/measuring.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 namespace {
 
 void tool_buttons(MeasureModel& measure) {
-    const float width = ImGui::GetFontSize() * 4.6f;
+    // Two columns of a button and its explanation, which fit into the narrowest bar.
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float mark = ImGui::CalcTextSize("?").x + style.ItemInnerSpacing.x;
+    const float width = (ImGui::GetContentRegionAvail().x - style.ItemSpacing.x) / 2 - mark;
     for (size_t i = 0; i < measure_kinds().size(); ++i) {
         const auto kind = static_cast<MeasureKind>(i);
         const bool active = measure.tool == kind;
         if (active) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-        if (i % 4 != 0) ImGui::SameLine();
+        if (i % 2 != 0) ImGui::SameLine();
         if (ImGui::Button(measure_kinds()[i].title.data(), ImVec2(width, 0)))
             active ? measure.stop() : measure.start(kind);
         if (active) ImGui::PopStyleColor();
+        help_mark(measure_kinds()[i].help);
     }
     if (!measure.tool) return;
     const MeasureKindInfo& info = info_of(*measure.tool);

@@ -56,7 +56,8 @@ void SectionPanel::draw(const Measuring& model) {
     ImGui::SetNextWindowPos(ImVec2(left, display.y - font * 19), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(display.x - left - font, font * 17), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowBgAlpha(1);
-    if (ImGui::Begin("Section")) {
+    bool open = true;
+    if (ImGui::Begin("Section", &open)) {
         const Section* section = measure.section.get();
         const bool whole = section && (section->complete || section->nodes_read == section->nodes);
         if (section)
@@ -74,6 +75,7 @@ void SectionPanel::draw(const Measuring& model) {
         if (section && size.x > 20 && size.y > 20) plot(measure.section, corner, size, units);
     }
     ImGui::End();
+    if (!open) measure.selected.reset();
 }
 
 void SectionPanel::plot(const std::shared_ptr<const Section>& section, const ImVec2& corner,

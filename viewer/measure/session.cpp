@@ -1,5 +1,7 @@
 #include "viewer/measure/session.h"
 
+#include <system_error>
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -39,7 +41,10 @@ void MeasureSession::follow_section(const Measuring& model) {
 void MeasureSession::save(const Measuring& model) {
     const auto path = model.view.pictures / model.measure.file;
     const auto done = model.measure.save(path);
-    model.measure.message = done ? "saved " + path.string() : done.error().line();
+    std::error_code unknown;
+    const auto whole = std::filesystem::absolute(path, unknown);
+    model.measure.message =
+        done ? "saved " + (unknown ? path : whole).lexically_normal().string() : done.error().line();
 }
 
 void MeasureSession::load(const Measuring& model) {
@@ -82,6 +87,10 @@ void MeasureSession::take_input(const Measuring& model) {
     take_results(model);
     follow_section(model);
     carry_out(model);
+    if (!model.measure.tool && !model.measure.prompt.empty()) {
+        if (model.view.message == model.measure.prompt) model.view.message.clear();
+        model.measure.prompt.clear();
+    }
     if (!model.measure.message.empty()) model.view.message = std::exchange(model.measure.message, {});
 }
 

@@ -97,7 +97,7 @@ std::span<const Action<const Styling>> look_actions() {
         Entry{{GLFW_KEY_C}, "Appearance", "Colour by the next attribute", next_colour},
         Entry{{GLFW_KEY_C, GLFW_MOD_SHIFT}, "Appearance", "The points' own colours", own_colours},
         Entry{{GLFW_KEY_C, GLFW_MOD_ALT}, "Appearance", "Next colour map", next_colour_map},
-        Entry{{GLFW_KEY_U}, "Appearance", "Light", switch_light, nullptr, is_lit},
+        Entry{{GLFW_KEY_U}, "Appearance", "Lighting", switch_light, nullptr, is_lit},
         Entry{
             {GLFW_KEY_U, GLFW_MOD_SHIFT}, "Appearance", "Next shading without light", next_shading, is_unlit},
         Entry{{GLFW_KEY_PERIOD}, "Appearance", "Larger points", larger_points},

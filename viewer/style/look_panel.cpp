@@ -7,6 +7,7 @@
 
 #include "viewer/style/look_edits.h"
 #include "viewer/style/styling.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -89,25 +90,38 @@ bool edit_outliers(gi::Look& look) {
     return true;
 }
 
+bool edit_size(gi::Look& look) {
+    if (look.point_pixels > 0) return slider("Size", look.point_pixels, 1, 20, "%.1f pixels");
+    return slider("Size", look.point_size, 0.1f, 5, "x %.2f", ImGuiSliderFlags_Logarithmic);
+}
+
+/// How points are drawn, beyond their size and colour.
 bool edit_points(gi::Look& look) {
+    if (!fold("More")) return false;
     bool changed = edit_outliers(look);
+    help_mark("points that lie on no surface, as of dust, rain or glass");
     bool fixed = look.point_pixels > 0;
-    const bool switched = ImGui::Checkbox("Fixed point size", &fixed);
-    changed |= switched;
-    if (switched) look.point_pixels = fixed ? 3 : 0;
-    if (fixed) return slider("Size", look.point_pixels, 1, 20, "%.1f pixels") || changed;
+    if (ImGui::Checkbox("Fixed point size", &fixed)) {
+        look.point_pixels = fixed ? 3 : 0;
+        changed = true;
+    }
+    help_mark("in pixels; otherwise each point is as large as the surface that it stands for");
+    if (look.point_pixels > 0) return changed;
     bool blended = !look.single_discs;
     if (ImGui::Checkbox("Blended surfaces", &blended)) {
         look.single_discs = !blended;
         changed = true;
     }
+    help_mark("discs that overlap are mixed, which hides their edges and the noise of colours");
     changed |= ImGui::Checkbox("Front sides only", &look.front_only);
+    help_mark("points that face away from the camera are not drawn: rooms are seen from outside");
     bool filled = !look.open_holes;
     if (ImGui::Checkbox("Filled holes", &filled)) {
         look.open_holes = !filled;
         changed = true;
     }
-    return slider("Size", look.point_size, 0.1f, 5, "x %.2f", ImGuiSliderFlags_Logarithmic) || changed;
+    help_mark("small holes of the scan that the conversion has filled, as below the scanner");
+    return changed;
 }
 
 bool edit_shading(const Styling& model, gi::Look& look) {
@@ -173,7 +187,7 @@ bool edit_box(gi::ClipBox& box, double speed, bool& gone) {
     changed |= drag_place("To", box.max, speed);
     box.max = glm::max(box.min, box.max);
     double degrees = box.rotation * 180 / std::numbers::pi;
-    if (slider("Rotation", degrees, -180, 180, "%.1f degrees")) {
+    if (slider("Rotation", degrees, -180, 180, "%.1f°")) {
         box.rotation = degrees * std::numbers::pi / 180;
         changed = true;
     }
@@ -237,17 +251,18 @@ bool edit_clip(const Styling& model, gi::Clip& clip) {
 void draw_look_panel(const Styling& model) {
     gi::Look& look = model.view.scene.look;
     bool changed = edit_colours(model, look);
-    changed |= edit_points(look);
+    changed |= edit_size(look);
     changed |= edit_shading(model, look);
     changed |= edit_backdrop(look);
-    changed |= edit_classes(model, look);
-    changed |= edit_clip(model, look.clip);
     // These are drawn over the picture; the picture need not be made again.
     ImGui::Checkbox("Legend", &look.legend);
     ImGui::SameLine();
     ImGui::Checkbox("Axes", &look.axes);
     ImGui::SameLine();
     ImGui::Checkbox("Scale bar", &look.scale_bar);
+    changed |= edit_classes(model, look);
+    changed |= edit_clip(model, look.clip);
+    changed |= edit_points(look);
     if (changed) model.view.scene_changed();
 }
 

@@ -137,6 +137,7 @@ TEST(LightEdits, EveryKindThatIsAddedIsReadBackFromTheSavedScene) {
     const test::TemporaryFolder folder;
     model.scene_file.set_path(folder / "saved.json");
     model.scene_file.save(model.view);
+    EXPECT_EQ(model.view.message, "saved " + (folder / "saved.json"));
     const auto saved = gi::load_scene(folder / "saved.json");
     ASSERT_TRUE(saved) << saved.error().line();
     EXPECT_EQ(saved->lights, model.view.scene.lights);
