@@ -59,7 +59,7 @@ std::span<const Action<const Publishing>> publish_actions() {
         Entry{{GLFW_KEY_F12, kCtrl}, "Picture", "Render picture", push<RenderPicture>, has_picture},
         Entry{{GLFW_KEY_T, kShift},
               "Picture",
-              "Transparent where no point is",
+              "Transparent background",
               [](const Publishing& m) { m.publish.finish.transparent = !m.publish.finish.transparent; },
               nullptr,
               [](const Publishing& m) { return m.publish.finish.transparent; }},

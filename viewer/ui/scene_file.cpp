@@ -1,5 +1,7 @@
 #include "viewer/ui/scene_file.h"
 
+#include <system_error>
+
 #include "gi/registry.h"
 #include "io/files/free_name.h"
 
@@ -53,8 +55,8 @@ std::filesystem::path SceneFile::place(const View& view) const {
     return free_name(view.pictures, "scene", {".json"}).string() + ".json";
 }
 
-Result<void> SceneFile::save_as(const View& view, const std::filesystem::path& path) {
-    LUCARNE_TRY(gi::save_scene(scene_to_save(view), path, path == path_));
+Result<void> SceneFile::save_as(const View& view, const std::filesystem::path& path, bool overwrite) {
+    LUCARNE_TRY(gi::save_scene(scene_to_save(view), path, overwrite || path == path_));
     path_ = path;
     mark(view);
     return {};
@@ -63,7 +65,10 @@ Result<void> SceneFile::save_as(const View& view, const std::filesystem::path& p
 void SceneFile::save(View& view) {
     const auto path = place(view);
     const auto saved = save_as(view, path);
-    view.message = saved ? "saved " + path.string() : saved.error().line();
+    std::error_code unknown;
+    const auto whole = std::filesystem::absolute(path, unknown);
+    view.message =
+        saved ? "saved " + (unknown ? path : whole).lexically_normal().string() : saved.error().line();
 }
 
 }  // namespace lucarne::viewer

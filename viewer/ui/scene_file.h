@@ -26,8 +26,8 @@ class SceneFile {
 
     /// Returns the file for saving the scene: path(), or a free name in the folder of pictures.
     std::filesystem::path place(const View& view) const;
-    /// Saves the scene to `path`, which becomes path(). Overwrites no other file than path().
-    Result<void> save_as(const View& view, const std::filesystem::path& path);
+    /// Saves the scene to `path`, which becomes path(). Overwrites no other file than path(), unless told to.
+    Result<void> save_as(const View& view, const std::filesystem::path& path, bool overwrite = false);
     /// Saves the scene to place() and reports that in the view's message.
     void save(View& view);
 

@@ -19,14 +19,15 @@ enum class BarSection : uint8_t {
     flythrough,
     picture,
     statistics,
-    controller
+    controller,
+    preferences
 };
-inline constexpr size_t kSections = 10;
+inline constexpr size_t kSections = 11;
 
 /// The sections' names in the settings file.
 inline constexpr std::array<std::string_view, kSections> kSectionNames = {
-    "scans",     "rendering",  "look",    "light",      "measure",
-    "bookmarks", "flythrough", "picture", "statistics", "controller"};
+    "scans",      "rendering", "look",       "light",      "measure",    "bookmarks",
+    "flythrough", "picture",   "statistics", "controller", "preferences"};
 
 /// The side bar on the left of the window. It contains all panels as sections that open and close.
 struct SideBar {

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "io/core/log.h"
+#include "io/files/json.h"
 #include "viewer/project/project.h"
 #include "viewer/scans/scan_set.h"
 #include "viewer/ui/on_screen.h"
@@ -26,6 +27,13 @@ void FileOpener::choose_files() {
     browser_.open(folder());
 }
 
+/// Shows the scene of a file. Errors: those of the file; there is no scan to show it on.
+Result<void> FileOpener::open_scene(const std::string& file) {
+    LUCARNE_TRY(load_json(file));
+    if (!model_.scans->source()) return failed(file, "is a scene", "open a scan first");
+    return model_.scene_file.open(model_.view, file);
+}
+
 /// Shows the scenes among the files, and takes them out of the list.
 void FileOpener::open_scenes(std::vector<std::string>& files) {
     const auto is_scene = [](const std::string& file) {
@@ -37,10 +45,9 @@ void FileOpener::open_scenes(std::vector<std::string>& files) {
             model_.commands.push(OpenProject{file});
             continue;
         }
-        const auto done = model_.scans->source() ? model_.scene_file.open(model_.view, file)
-                                                 : failed(file, "is a scene", "open a scan first");
+        const auto done = open_scene(file);
         if (done) model_.lights.mood.reset();
-        model_.view.message = done ? "opened " + file : done.error().line();
+        model_.view.message = done ? "opened " + absolute_path(file) : done.error().line();
         log::info("{}", model_.view.message);
     }
     std::erase_if(files, is_scene);
@@ -48,11 +55,27 @@ void FileOpener::open_scenes(std::vector<std::string>& files) {
 
 void FileOpener::look_at(const std::array<glm::dvec3, 2>& box) {
     CameraRig rig = model_.view.rig;
-    rig.fit(box, picture_shape(model_.view.side_bar));
+    rig.fit(widened(box, 0, kLeastBox / model_.view.site.metres_per_unit),
+            picture_shape(model_.view.side_bar));
     model_.view.glide_to(rig.camera());
 }
 
+/// Saves the scene once the user has named a file.
+void FileOpener::save_scene() {
+    FileQuestion& question = model_.scene_name;
+    const auto answer = question.take_answer();
+    if (!answer) return;
+    const std::string file = absolute_path(answer->file.string());
+    const auto saved = model_.scene_file.save_as(model_.view, file, answer->overwrite);
+    question.problem = saved ? "" : saved.error().line();
+    if (!saved) return;
+    question.shown = false;
+    model_.view.message = "saved " + file;
+    log::info("{}", model_.view.message);
+}
+
 void FileOpener::take_files() {
+    save_scene();
     std::vector<std::string> files = window_.take_dropped_files();
     const auto add = [&](std::vector<std::string> more) {
         std::ranges::move(more, std::back_inserter(files));

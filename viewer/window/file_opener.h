@@ -10,7 +10,8 @@
 
 namespace lucarne::viewer {
 
-/// Lets the user choose files, opens them, and remembers them in the settings.
+/// Lets the user choose files, opens them, and remembers them in the settings. Saves scenes under the name
+/// that the user gives.
 class FileOpener {
  public:
     FileOpener(Window& window, ViewModel& model, KeptSettings& settings)
@@ -19,11 +20,16 @@ class FileOpener {
     /// Opens scans, projects and scenes (.json) that were dropped on the window or chosen in a dialog.
     void take_files();
     /// Whether a dialog in the window asks for files, so that keys are for it.
-    bool asks() const { return browser_.is_open(); }
-    void draw() { draw_file_browser(browser_, model_.scan_commands); }
+    bool asks() const { return browser_.is_open() || model_.scene_name.shown; }
+    void draw() {
+        draw_file_browser(browser_, model_.scan_commands);
+        draw_file_question("Save scene", model_.scene_name);
+    }
 
  private:
     void choose_files();
+    void save_scene();
+    Result<void> open_scene(const std::string& file);
     void open_scenes(std::vector<std::string>& files);
     void look_at(const std::array<glm::dvec3, 2>& box);
     std::filesystem::path folder() const;

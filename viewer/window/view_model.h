@@ -75,6 +75,7 @@ struct ViewModel {
     ScanSet* scans = nullptr;  ///< the open scans; outlive the model
     ScanCommands scan_commands;
     CommandQueue<SaveScene, SavePicture, Close, OpenProject> commands;
+    FileQuestion scene_name;    ///< the scene's file, as asked for by "Save scene as..."
     FileQuestion project_name;  ///< the project's file, as asked for by "Save project as..."
     ExportChoice exporting;
     ClosingQuestion closing;

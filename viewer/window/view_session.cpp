@@ -64,7 +64,7 @@ std::string scans_title(const std::vector<ScanRow>& rows) {
     size_t open = 0;
     for (const ScanRow& row : rows)
         if (row.state != ScanState::failed && ++open == 1) title = row.name();
-    if (open == 0) return "nothing is open";
+    if (open == 0) return "No scan open";
     if (open > 1) title += fmt::format(" and {} more", open - 1);
     for (const ScanRow& row : rows)
         if (row.state == ScanState::converting)
@@ -446,7 +446,7 @@ void ViewSession::send_request() {
 std::string ViewSession::unfinished() const {
     if (whole_pictures_ == 0) return ", preview quality";
     const uint32_t averaged = model_.view.picture->stats.accumulated;
-    return averaged < kMostAccumulated ? fmt::format(", {} of {} averaged", averaged, kMostAccumulated) : "";
+    return averaged < kMostAccumulated ? fmt::format(", {} of {} frames", averaged, kMostAccumulated) : "";
 }
 
 Result<void> ViewSession::carry_out() {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include "tests/viewer/program.h"
+
 namespace lucarne::viewer {
 namespace {
 
@@ -52,6 +54,25 @@ TEST(Actions, RunByTheirKeyWithWhatIsHeldDownBesideItAndOnlyWhereEnabled) {
     run_actions(actions, std::array{help, picture});
     EXPECT_TRUE(model.show_help);
     EXPECT_TRUE(model.commands.empty()) << "there is no picture to save";
+}
+
+TEST(Actions, ASceneIsSavedUnderANameThatTheUserGivesTheFirstTime) {
+    ViewModel model(10);
+    const test::TemporaryFolder folder;
+    model.view.pictures = folder.path();
+    const auto actions = bound_actions(model);
+    const KeyChord save{GLFW_KEY_S, GLFW_MOD_CONTROL}, save_as{GLFW_KEY_S, GLFW_MOD_CONTROL | GLFW_MOD_ALT};
+    run_actions(actions, std::array{save});
+    EXPECT_TRUE(model.scene_name.shown);
+    EXPECT_EQ(model.scene_name.file, folder / "lucarne-scene.json");
+    EXPECT_TRUE(model.commands.empty());
+    model.scene_name.shown = false;
+    model.scene_file.set_path(folder / "mine.json");
+    run_actions(actions, std::array{save});
+    EXPECT_FALSE(model.scene_name.shown);
+    EXPECT_FALSE(model.commands.empty());
+    run_actions(actions, std::array{save_as});
+    EXPECT_TRUE(model.scene_name.shown);
 }
 
 TEST(Actions, MoodsLightWhatIsOpenAndScanColoursNeedNoLight) {

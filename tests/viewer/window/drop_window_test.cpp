@@ -51,7 +51,7 @@ TEST_F(DroppedFiles, ThatAreScenesAreShown) {
                                "lights": [{"type": "point", "position": [2.7, 2.8, 5], "intensity": [40, 40, 40]}]})";
     std::ofstream(broken) << "{";
     start_with("");
-    ASSERT_TRUE(title_comes("nothing is open"));
+    ASSERT_TRUE(title_comes("No scan open"));
     ASSERT_EQ(drop(uri(scene)).code, 0);
     EXPECT_TRUE(eventually([&] { return log().find("open a scan first") != std::string::npos; })) << log();
     ASSERT_EQ(drop(uri(cache_)).code, 0);
@@ -105,7 +105,7 @@ TEST_F(DroppedFiles, OpenAsScansAndTheOneThatIsNoneIsNamed) {
     ASSERT_EQ(lucarne("generate two-rooms --points 20k -o " + second).code, 0);
     std::ofstream(letter) << "%PDF-1.4\nDear reader";
     start_with("");
-    ASSERT_TRUE(title_comes("nothing is open"));
+    ASSERT_TRUE(title_comes("No scan open"));
     const Outcome dropped = drop(uri(greeting) + uri(letter) + uri(second));
     ASSERT_EQ(dropped.code, 0) << dropped.output;
     ASSERT_TRUE(picture(lit)) << log();

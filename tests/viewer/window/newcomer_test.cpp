@@ -26,7 +26,7 @@ class Newcomer : public ManagedWindow {
     }
     void open_window() {
         start_with("", "PATH=" + folder_.path().string() + ":$PATH");
-        ASSERT_TRUE(title_comes("nothing is open")) << "start page";
+        ASSERT_TRUE(title_comes("No scan open")) << "start page";
         window_ = xdo("getactivewindow").output;
         window_.pop_back();
         xdo("key ctrl+o");

@@ -35,6 +35,7 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
     EXPECT_EQ(loaded.settings.text_size, 1.5);
     loaded.settings.window = {800, 600};
     loaded.settings.navigation = "walk";
+    loaded.settings.device_memory = 4096;
     loaded.settings.side_bar.shown = false;
     loaded.settings.side_bar.width = 31.5;
     loaded.settings.side_bar.open.fill(false);
@@ -50,6 +51,7 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
     EXPECT_EQ(again.problem, "");
     EXPECT_EQ(again.settings.window.width, 800u);
     EXPECT_EQ(again.settings.navigation, "walk");
+    EXPECT_EQ(again.settings.device_memory, 4096);
     EXPECT_FALSE(again.settings.side_bar.shown);
     EXPECT_EQ(again.settings.side_bar.width, 31.5);
     EXPECT_EQ(again.settings.side_bar.open, loaded.settings.side_bar.open);
@@ -61,9 +63,10 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
 
 TEST(Settings, ABrokenFileIsPutAsideAndReported) {
     for (const std::string text :
-         {"{", "[]", R"({"text_size": "large"})", R"({"recent": [1]})", R"({"side_bar": {"width": 1e9}})",
-          R"({"side_bar": {"open": "light"}})", R"({"side_bar": {"open": [1]}})",
-          R"({"controller": {"up": {"from": "left"}}})", R"({"window": {"width": 0}})"}) {
+         {"{", "[]", R"({"text_size": "large"})", R"({"recent": [1]})", R"({"device_memory": -1})",
+          R"({"side_bar": {"width": 1e9}})", R"({"side_bar": {"open": "light"}})",
+          R"({"side_bar": {"open": [1]}})", R"({"controller": {"up": {"from": "left"}}})",
+          R"({"window": {"width": 0}})"}) {
         const TemporaryFolder folder;
         write(folder / "settings.json", text);
         const LoadedSettings loaded = load_settings(folder.path());

@@ -153,7 +153,7 @@ TEST_F(ViewerWindow, OpensWithNothingTakesFilesFromTheDesktopsDialogAndOutlivesA
     std::filesystem::permissions(dialog, std::filesystem::perms::owner_all);
     std::ofstream(folder_ / "broken.las") << "LASF and no more";
     start_with("", "PATH=" + folder_.path().string() + ":$PATH");
-    ASSERT_TRUE(eventually([&] { return xdo("search --name 'nothing is open'").code == 0; }));
+    ASSERT_TRUE(eventually([&] { return xdo("search --name 'No scan open'").code == 0; }));
     xdo("key ctrl+o");
     const auto oblique = picture(lit);
     ASSERT_TRUE(oblique) << log();

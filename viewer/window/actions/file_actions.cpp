@@ -38,20 +38,28 @@ bool is_stopped(const ViewModel& model) {
                return row.state == ScanState::stopped;
            });
 }
-void save_scene(ViewModel& model) {
-    model.commands.push(SaveScene{});
-}
 /// Asks for a file. Proposes one beside the saved pictures, named after the first scan.
 void ask(ViewModel& model, FileQuestion& question, const char* ending) {
     std::string& file = question.file;
     if (file.empty()) {
-        const std::filesystem::path scan = model.scans->rows().front().paths.front();
+        const std::filesystem::path scan =
+            has_scans(model) ? model.scans->rows().front().paths.front() : "lucarne";
         std::error_code unknown;
         file = std::filesystem::absolute(model.view.pictures / (scan.stem().string() + ending), unknown)
                    .lexically_normal()
                    .string();
     }
     question.ask();
+}
+void save_scene_as(ViewModel& model) {
+    if (model.scene_name.file.empty() && !model.scene_file.path().empty())
+        model.scene_name.file = absolute_path(model.scene_file.path().string());
+    ask(model, model.scene_name, "-scene.json");
+}
+/// Asks for a name the first time.
+void save_scene(ViewModel& model) {
+    if (model.scene_file.path().empty()) return save_scene_as(model);
+    model.commands.push(SaveScene{});
 }
 void save_project(ViewModel& model) {
     ask(model, model.project_name, "-project.json");
@@ -83,7 +91,9 @@ std::span<const Action<ViewModel>> file_actions() {
         Entry{{GLFW_KEY_W, GLFW_MOD_CONTROL}, "File", "Close all scans", close_scans, has_scans},
         Entry{{GLFW_KEY_PERIOD, GLFW_MOD_CONTROL}, "File", "Cancel loads and conversions", cancel, is_busy},
         Entry{{GLFW_KEY_COMMA, GLFW_MOD_CONTROL}, "File", "Resume conversions", go_on, is_stopped},
+        Entry{{GLFW_KEY_O, GLFW_MOD_CONTROL | GLFW_MOD_ALT}, "File", "Open scene...", open_file, has_scans},
         Entry{{GLFW_KEY_S, GLFW_MOD_CONTROL}, "File", "Save scene", save_scene},
+        Entry{{GLFW_KEY_S, GLFW_MOD_CONTROL | GLFW_MOD_ALT}, "File", "Save scene as...", save_scene_as},
         Entry{{GLFW_KEY_S, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT},
               "File",
               "Save project as...",

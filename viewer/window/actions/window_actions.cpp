@@ -70,6 +70,7 @@ std::span<const Action<ViewModel>> window_actions() {
         section<BarSection::picture>({GLFW_KEY_F12, GLFW_MOD_SHIFT}, "Save a picture"),
         section<BarSection::statistics>({GLFW_KEY_F8}, "Statistics"),
         section<BarSection::controller>({GLFW_KEY_F6}, "6-DoF controller"),
+        section<BarSection::preferences>({GLFW_KEY_F9}, "Preferences"),
         Entry{{GLFW_KEY_EQUAL, GLFW_MOD_CONTROL}, "Window", "Larger text", larger_text},
         Entry{{GLFW_KEY_MINUS, GLFW_MOD_CONTROL}, "Window", "Smaller text", smaller_text},
         Entry{{GLFW_KEY_F1}, "Help", "Keys and mouse", toggle_help, nullptr, shows_help},

@@ -17,6 +17,7 @@ void draw_closing_question(ViewModel& model);  ///< lists unsaved and running wo
 void draw_side_bar(ViewModel& model, bool has_view);
 void draw_statistics_panel(const ViewModel& model);  ///< figures of the last picture
 void draw_controller_panel(ViewModel& model);        ///< mapping of the 6-DoF controller
+void draw_preferences_panel(ViewModel& model);       ///< what the settings keep
 
 void draw_help(bool& shown, std::span<const BoundAction> actions);  ///< every action and gesture
 void draw_status_line(const ViewModel& model);                      ///< the point under the cursor

@@ -28,6 +28,7 @@ constexpr std::array<SectionEntry, kSections> kEntries = {{
     {"Save a picture", [](ViewModel& model) { draw_picture_panel(model.publishing()); }, true},
     {"Statistics", [](ViewModel& model) { draw_statistics_panel(model); }, true},
     {"6-DoF controller", draw_controller_panel, false},
+    {"Preferences", draw_preferences_panel, false},
 }};
 
 /// Returns whether a section is shown. With nothing open there is only the start page, and sections that need

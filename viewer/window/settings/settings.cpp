@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFile = "settings.json";
 constexpr int64_t kLargestWindow = 16384;
+constexpr double kMostDeviceMemory = 1 << 20;  ///< MiB
 
 /// In the order of the mapping's axes.
 constexpr std::array<const char*, io::SixDofMapping::kAxes> kAxes = {"right",   "up",        "forward",
@@ -87,6 +88,7 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
     }
     LUCARNE_ASSIGN(settings.navigation, object.text("navigation", ""));
     LUCARNE_ASSIGN(settings.text_size, object.number("text_size", {0.5, 4}, 1.0));
+    LUCARNE_ASSIGN(settings.device_memory, object.number("device_memory", {0, kMostDeviceMemory}, 0.0));
     LUCARNE_ASSIGN(auto side_bar, object.object("side_bar"));
     if (side_bar) {
         LUCARNE_ASSIGN(settings.side_bar, read_side_bar(*side_bar, json["side_bar"]));
@@ -103,7 +105,8 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
         }
     }
     settings.others = json;
-    for (const char* known : {"window", "navigation", "text_size", "side_bar", "controller", "recent"})
+    for (const char* known :
+         {"window", "navigation", "text_size", "device_memory", "side_bar", "controller", "recent"})
         settings.others.erase(known);
     return settings;
 }
@@ -153,6 +156,7 @@ Result<void> save_settings(const Settings& settings, const fs::path& folder) {
         json["window"] = {{"width", settings.window.width}, {"height", settings.window.height}};
     if (!settings.navigation.empty()) json["navigation"] = settings.navigation;
     json["text_size"] = settings.text_size;
+    if (settings.device_memory > 0) json["device_memory"] = settings.device_memory;
     json["side_bar"] = side_bar_json(settings.side_bar);
     if (!(settings.controller == io::SixDofMapping{})) json["controller"] = mapping_json(settings.controller);
     json["recent"] = settings.recent;

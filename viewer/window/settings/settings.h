@@ -19,6 +19,7 @@ struct Settings {
     std::vector<std::string> recent;  ///< paths, the newest first
     std::string navigation;           ///< "orbit", "turntable", "fly" or "walk"; empty: not chosen yet
     double text_size = 1;             ///< factor in addition to the screen's scale
+    double device_memory = 0;         ///< cap, MiB; 0: not chosen
     SideBar side_bar;
     io::SixDofMapping controller;
     nlohmann::json others = nlohmann::json::object();  ///< unknown keys; written back
