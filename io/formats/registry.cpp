@@ -78,16 +78,9 @@ tl::unexpected<Error> json_error(const std::filesystem::path& path) {
     return rejected(path.string(), "is no scan", "give a scene to --scene; lucarne view opens projects");
 }
 
-}  // namespace
-
-Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
-                                               const ReadOptions& options) {
-    LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
-    return open_scan(std::move(file), options);
-}
-
-Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file,
-                                               const ReadOptions& options) {
+/// Opens a scan in the axes of its file.
+Result<std::unique_ptr<PointSource>> open_as_it_is(std::shared_ptr<const ByteSource> file,
+                                                   const ReadOptions& options) {
     const std::filesystem::path& path = file->path();
     LUCARNE_ASSIGN(const Candidates found, candidates_for(*file));
     const auto& [told, named, head] = found;
@@ -112,6 +105,20 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
     }
     if (lower_extension(path) == ".json") return json_error(path);
     return rejected(path.string(), "has an unrecognised format", "convert it to LAS or PLY");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
+                                               const ReadOptions& options) {
+    LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
+    return open_scan(std::move(file), options);
+}
+
+Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file,
+                                               const ReadOptions& options) {
+    LUCARNE_ASSIGN(auto scan, open_as_it_is(std::move(file), options));
+    return turned(std::move(scan), options.up);
 }
 
 Result<mesh::Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options) {

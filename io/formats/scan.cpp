@@ -19,6 +19,7 @@ std::string options_text(const ReadOptions& options) {
     if (!options.columns.empty()) text += fmt::format("--columns {}", options.columns);
     const auto add = [&](const std::string& more) { text += (text.empty() ? "" : " ") + more; };
     if (options.metres_per_unit) add(fmt::format("--unit {}", *options.metres_per_unit));
+    if (options.up != UpAxis::z) add(fmt::format("--up {}", up_axis_name(options.up)));
     if (options.mesh.spacing > 0) add(fmt::format("--spacing {}", options.mesh.spacing));
     if (options.mesh.samples > 0) add(fmt::format("--mesh-points {}", options.mesh.samples));
     if (options.mesh.vertices) add("--vertices");

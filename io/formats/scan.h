@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "io/files/byte_source.h"
+#include "io/formats/turned.h"
 #include "io/lattice.h"
 #include "io/points.h"
 
@@ -34,6 +35,7 @@ struct ReadOptions {
     /// Metres per unit of length of the file. If unset, the file's own unit counts, or metres where it states
     /// none.
     std::optional<double> metres_per_unit;
+    UpAxis up = UpAxis::z;  ///< of the file; the scan is turned so that z points up
 };
 /// Returns the options that change the points as text; empty if all have their default. A cache keeps this
 /// text, so that a cache made with other options is not used by mistake.

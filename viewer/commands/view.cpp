@@ -186,8 +186,8 @@ void add_view(CommandLine& line) {
         options->size_given = command.given("--size");
         options->says_what = !command.given_only(
             {"INPUT", "--size", "--points", "--memory", "--device-memory", "--no-prefetch", "--no-cache",
-             "--frame-time", "--screenshot", "--frames", "--overwrite", "--columns", "--unit", "--spacing",
-             "--mesh-points", "--vertices", "--salvage"});
+             "--frame-time", "--screenshot", "--frames", "--overwrite", "--columns", "--unit", "--up",
+             "--spacing", "--mesh-points", "--vertices", "--salvage"});
         return view(*options);
     });
 }

@@ -53,6 +53,8 @@ Result<Files> open_files(const InputOptions& options) {
         files.octree = true;
         if (options.read.metres_per_unit)
             log::warn("{}: is an octree and keeps its unit; --unit is for scans that are converted", path);
+        if (options.read.up != io::UpAxis::z)
+            log::warn("{}: is an octree and keeps its axes; --up is for scans that are converted", path);
     }
     return files;
 }

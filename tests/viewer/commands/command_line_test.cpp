@@ -83,10 +83,10 @@ TEST(CommandHelp, ListsEverydayOptionsFirstAndTheOthersUnderTitles) {
     const test::Outcome ran = test::lucarne("render --help");
     EXPECT_EQ(ran.code, 0);
     size_t last = 0;
-    for (const char* part : {"--mood", "--engine", "--size", "--output", "\nPoints and colours:",
+    for (const char* part : {"--output", "--mood", "--engine", "--size", "\nPoints and colours:",
                              "--clip-box", "\nExposure, albedo and comparison:", "--exposure",
                              "\nDetail and memory:", "--memory", "\nEngines:", "--bounces",
-                             "  Do not favour VPLs that light the view", "\nReading scans:", "--columns"}) {
+                             "Do not favour VPLs that light the view", "\nReading scans:", "--columns"}) {
         const size_t at = ran.output.find(part, last);
         ASSERT_NE(at, std::string::npos) << part << " is missing, or above what it should follow";
         last = at;
@@ -120,6 +120,12 @@ TEST(CommandErrors, WrongNamesAreFoundBeforeAnythingIsOpened) {
               0u);
     EXPECT_EQ(refused(" --beside vlp").find("lucarne: unknown engine 'vlp'"), 0u);
     EXPECT_NE(refused(" --luminance 3").find("is not a range of luminances"), std::string::npos);
+}
+
+TEST(CommandErrors, AnAxisThatDoesNotExistPointsNowhere) {
+    const test::Outcome ran = test::lucarne("info --up w no.las");
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_NE(ran.output.find("--up: is none of x, y, z, -x, -y, -z"), std::string::npos) << ran.output;
 }
 
 TEST(CommandErrors, AMissingInputIsCalledSo) {

@@ -34,6 +34,16 @@ void add_read_options(Arguments& command, io::ReadOptions& options) {
             "ft, us-ft, "
             "in, or the unit's length in metres")
         .type_name("UNIT");
+    command
+        .parsed(
+            "--up",
+            [&options](const std::string& text) {
+                const auto up = io::up_axis(text);
+                options.up = up.value_or(io::UpAxis::z);
+                return problem_unless(up.has_value(), "is none of x, y, z, -x, -y, -z");
+            },
+            "Axis of the scans' files that points up: x, y, z (default), -x, -y, -z")
+        .type_name("AXIS");
     const Argument spacing =
         command
             .add("--spacing", options.mesh.spacing,
