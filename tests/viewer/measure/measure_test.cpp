@@ -56,6 +56,22 @@ TEST(Measure, DistancesAndHeightsAreThoseOfGeometry) {
     EXPECT_NEAR(value(p, "segment 2"), 2, 1e-9);
 }
 
+TEST(MeasureModel, TheToolsMessageEndsWithTheTool) {
+    MeasureModel measure;
+    measure.start(MeasureKind::distance);
+    EXPECT_EQ(measure.message, "Distance: click two points");
+    EXPECT_EQ(measure.prompt, measure.message);
+    measure.stop();
+    EXPECT_EQ(measure.message, "") << "not shown yet, and not to be shown";
+    measure.start(MeasureKind::distance);
+    measure.take(ExactPoint{});
+    EXPECT_EQ(measure.prompt, measure.message) << "the first point's coordinates";
+    measure.take(ExactPoint{});
+    EXPECT_EQ(measure.message, "Distance 1");
+    measure.stop();
+    EXPECT_EQ(measure.message, "Distance 1") << "a result stays";
+}
+
 TEST(Measure, AnglesAreExactDownToNoneAndUpToAStraightLine) {
     for (const double degrees : {0.0, 1e-3, 30.0, 90.0, 135.0, 179.999, 180.0}) {
         const double a = degrees / 180 * std::numbers::pi;

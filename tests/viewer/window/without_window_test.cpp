@@ -1,4 +1,5 @@
 // Menus and panels that are drawn without a window.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/viewer/window/imgui_context.h"
+#include "viewer/measure/section_panel.h"
 #include "viewer/ui/popups.h"
 #include "viewer/window/actions/actions.h"
 #include "viewer/window/panels/panels.h"
@@ -78,6 +80,51 @@ TEST_F(Menus, EscapeClosesWhatIsOpenAndNothingElse) {
     };
     for (int i = 0; i < 2; ++i) imgui_.frame({300, 300}, false, question);
     EXPECT_FALSE(close_popups());
+}
+
+class MeasurePanels : public testing::Test {
+ protected:
+    test::ImguiContext imgui_{{1280, 800}};
+    ViewModel model_{10};
+};
+
+TEST_F(MeasurePanels, TheSectionIsClosedByItsButton) {
+    MeasureModel& measure = model_.measure;
+    measure.list.add({MeasureKind::section, "", {ExactPoint{}, ExactPoint{}}, 1});
+    measure.selected = 0;
+    model_.view.side_bar.unfold(BarSection::measure);
+    SectionPanel panel;
+    ImVec2 button;
+    const auto draw = [&] {
+        panel.draw(model_.measuring());
+        if (ImGui::Begin("Section")) {  // the same window once more, to ask where it is
+            const float inside = ImGui::GetFontSize() / 2 + ImGui::GetStyle().FramePadding.y;
+            button = {ImGui::GetWindowPos().x + ImGui::GetWindowWidth() - inside,
+                      ImGui::GetWindowPos().y + inside};
+        }
+        ImGui::End();
+    };
+    imgui_.frame({0, 0}, false, draw);
+    EXPECT_TRUE(measure.selected);
+    imgui_.click(button, [&] { panel.draw(model_.measuring()); });
+    EXPECT_FALSE(measure.selected);
+    EXPECT_EQ(measure.list.all().size(), 1u) << "it stays in the list";
+}
+
+TEST_F(MeasurePanels, AllToolsFitIntoTheNarrowestBar) {
+    float width = 0, right = 0;
+    for (int i = 0; i < 2; ++i)
+        imgui_.frame({0, 0}, false, [&] {
+            width = static_cast<float>(SideBar::kLeast) * ImGui::GetFontSize();
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({width, 700});
+            ImGui::Begin("bar");
+            draw_measure_panel(model_.measuring());
+            for (const ImDrawVert& vertex : ImGui::GetWindowDrawList()->VtxBuffer)
+                right = std::max(right, vertex.pos.x);
+            ImGui::End();
+        });
+    EXPECT_LE(right, width + 4) << "but for the soft edge of the border";
 }
 
 }  // namespace

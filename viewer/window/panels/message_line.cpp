@@ -55,7 +55,7 @@ void draw_message(const ViewModel& model, bool busy) {
     ImGui::SetNextWindowPos(ImVec2(middle, size.y - edge - (beside ? 0 : row)), ImGuiCond_Always,
                             ImVec2(0.5f, 1.0f));
     ImGui::SetNextWindowSize(plate);
-    ImGui::SetNextWindowBgAlpha(0.6f);
+    ImGui::SetNextWindowBgAlpha(0.85f);  // a long text may lie over the scale bar
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
     if (ImGui::Begin("##message", nullptr, flags)) {
