@@ -122,7 +122,10 @@ bool edit_shape(gi::SceneLight& light, double scene_size) {
 bool edit_light(const Lighting& model, gi::SceneLight& light) {
     const bool sun = light.kind == gi::LightKind::directional;
     bool changed = edit_strength(model, light);
-    if (sun) draw_sun(model);
+    if (sun)
+        draw_sun(model);
+    else if (ImGui::Button("Move to the camera"))
+        place_light_at_camera(model);
     if (!fold("More")) return changed;
     if (ImGui::InputText("Name", &light.name)) model.view.shown_changed();
     if (!sun) {
@@ -170,8 +173,6 @@ void draw_light_panel(const Lighting& model) {
     if (gi::SceneLight* light = model.selected_light()) {
         ImGui::Separator();
         if (edit_light(model, *light)) model.view.scene_changed();
-        if (light->kind != gi::LightKind::directional && ImGui::Button("Move to the camera"))
-            place_light_at_camera(model);
     }
     draw_sky(model);
     draw_emitters(model);

@@ -1,7 +1,5 @@
 #include "viewer/measure/session.h"
 
-#include <system_error>
-
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -9,6 +7,7 @@
 #include "viewer/measure/measuring.h"
 #include "viewer/overlay/axis_marks.h"
 #include "viewer/ui/on_screen.h"
+#include "viewer/ui/whole_path.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -41,10 +40,7 @@ void MeasureSession::follow_section(const Measuring& model) {
 void MeasureSession::save(const Measuring& model) {
     const auto path = model.view.pictures / model.measure.file;
     const auto done = model.measure.save(path);
-    std::error_code unknown;
-    const auto whole = std::filesystem::absolute(path, unknown);
-    model.measure.message =
-        done ? "saved " + (unknown ? path : whole).lexically_normal().string() : done.error().line();
+    model.measure.message = done ? "saved " + whole_path(path) : done.error().line();
 }
 
 void MeasureSession::load(const Measuring& model) {

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "viewer/ui/whole_path.h"
+
 namespace lucarne::viewer {
 NodeCache& MeasureWorker::cache_of(const std::shared_ptr<const octree::NodeSource>& source) {
     if (!cache_ || cache_->source() != source) cache_ = std::make_unique<NodeCache>(source);
@@ -103,7 +105,7 @@ void MeasureWorker::save_section(const std::filesystem::path& base, const std::s
     sections_.push(
         "section", [=, this] { return write_section(base, title, units); },
         [=, this](const Result<void>& written) {
-            say(written ? fmt::format("saved {}.csv and .svg", base.string()) : written.error().line());
+            say(written ? fmt::format("saved {}.csv and .svg", whole_path(base)) : written.error().line());
         });
 }
 

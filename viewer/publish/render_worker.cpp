@@ -8,6 +8,7 @@
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/video.h"
 #include "viewer/opening/first_view.h"
+#include "viewer/ui/whole_path.h"
 
 namespace lucarne::viewer {
 
@@ -63,7 +64,7 @@ Result<std::string> RenderWorker::still(Pipeline& pipeline, const RenderOrder& o
         LUCARNE_TRY(frame_done());
     }
     LUCARNE_TRY(io::write_png(what.file, finished_picture(pipeline, what.camera, what.finish), false));
-    return fmt::format("saved {} ({}x{})", what.file.string(), order.size.width, order.size.height);
+    return fmt::format("saved {} ({}x{})", whole_path(what.file), order.size.width, order.size.height);
 }
 
 Result<std::string> RenderWorker::flight(Pipeline& pipeline, const RenderOrder& order,
@@ -83,7 +84,7 @@ Result<std::string> RenderWorker::flight(Pipeline& pipeline, const RenderOrder& 
     };
     LUCARNE_ASSIGN(const Flight flown, fly(pipeline, what.path, how));
     if (video) LUCARNE_TRY(video->finish());
-    return fmt::format("saved {}: {} frames", work_.shown().file, what.path.frames());
+    return fmt::format("saved {}: {} frames", whole_path(work_.shown().file), what.path.frames());
 }
 
 Result<std::string> RenderWorker::draw(const RenderOrder& order, const WorkerDevice& device) {

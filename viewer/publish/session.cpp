@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "io/core/counted.h"
+#include "viewer/ui/whole_path.h"
+
 namespace lucarne::viewer {
 namespace {
 
@@ -42,8 +45,10 @@ void PublishSession::path_files(const Publishing& model, bool save) {
     PublishModel& publish = model.publish;
     const auto file = model.view.pictures / publish.path_file;
     const auto done = save ? publish.save_path(file) : publish.load_path(file);
-    publish.message =
-        done ? fmt::format("{} {}", save ? "saved" : "loaded", file.string()) : done.error().line();
+    const size_t keys = publish.editor.path().keys.size();
+    publish.message = !done  ? done.error().line()
+                      : save ? "saved " + whole_path(file)
+                             : counted(keys, "key frames") + " loaded";
 }
 
 void PublishSession::carry_out(const Publishing& model,

@@ -1,9 +1,8 @@
 #include "viewer/ui/scene_file.h"
 
-#include <system_error>
-
 #include "gi/registry.h"
 #include "io/files/free_name.h"
+#include "viewer/ui/whole_path.h"
 
 namespace lucarne::viewer {
 
@@ -65,10 +64,7 @@ Result<void> SceneFile::save_as(const View& view, const std::filesystem::path& p
 void SceneFile::save(View& view) {
     const auto path = place(view);
     const auto saved = save_as(view, path);
-    std::error_code unknown;
-    const auto whole = std::filesystem::absolute(path, unknown);
-    view.message =
-        saved ? "saved " + (unknown ? path : whole).lexically_normal().string() : saved.error().line();
+    view.message = saved ? "saved " + whole_path(path) : saved.error().line();
 }
 
 }  // namespace lucarne::viewer

@@ -6,6 +6,7 @@
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/files/free_name.h"
+#include "viewer/ui/whole_path.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -59,9 +60,7 @@ Result<void> save_unsaved(ViewModel& model, SaveTo to) {
     Result<void> first;
     for (const Unsaved& one : unsaved(model, to)) {
         auto saved = one.save(model);
-        std::error_code unknown;
-        const auto whole = std::filesystem::absolute(one.file, unknown);
-        if (saved) log::info("saved {}", (unknown ? one.file : whole).lexically_normal().string());
+        if (saved) log::info("saved {}", whole_path(one.file));
         if (!saved && first) first = std::move(saved);
     }
     return first;

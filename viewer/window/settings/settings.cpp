@@ -9,6 +9,7 @@
 #include "io/files/json.h"
 #include "io/files/put_aside.h"
 #include "io/files/user_folder.h"
+#include "viewer/ui/whole_path.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -125,9 +126,7 @@ void Settings::opened(const std::string& path) {
 }
 
 std::string absolute_path(const std::string& path) {
-    std::error_code unknown;
-    const auto whole = fs::absolute(path, unknown);
-    return unknown ? path : whole.lexically_normal().string();
+    return whole_path(path);
 }
 
 fs::path config_folder() {
