@@ -20,7 +20,8 @@ inline Result<size_t> find_name(std::string_view option, const std::string& name
         if (names[i] == name) return i;
     std::string kind(option.substr(option.find_first_not_of('-')));
     std::ranges::replace(kind, '-', ' ');
-    return bad_arguments("", fmt::format("unknown {} '{}'", kind, name), advice(name, names));
+    return bad_arguments(std::string(option), fmt::format("unknown {} '{}'", kind, name),
+                         advice(name, names));
 }
 
 }  // namespace lucarne::viewer

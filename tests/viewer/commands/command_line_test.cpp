@@ -114,9 +114,11 @@ TEST(CommandErrors, WrongNamesAreFoundBeforeAnythingIsOpened) {
         return ran.output;
     };
     EXPECT_EQ(refused(" --engine vlp").find("lucarne: unknown engine 'vlp'; did you mean vpl?"), 0u);
-    EXPECT_EQ(refused(" --tone-map filmc").find("lucarne: unknown tone map 'filmc'; did you mean filmic?"),
+    EXPECT_EQ(refused(" --tone-map filmc")
+                  .find("lucarne: --tone-map: unknown tone map 'filmc'; did you mean filmic?"),
               0u);
-    EXPECT_EQ(refused(" --colour elevatoin").find("lucarne: unknown colour 'elevatoin'; did you mean elev"),
+    EXPECT_EQ(refused(" --colour elevatoin")
+                  .find("lucarne: --colour: unknown colour 'elevatoin'; did you mean elev"),
               0u);
     EXPECT_EQ(refused(" --beside vlp").find("lucarne: unknown engine 'vlp'"), 0u);
     EXPECT_NE(refused(" --luminance 3").find("is not a range of luminances"), std::string::npos);
