@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "gi/device/cl/cl_choice.h"
 #include "io/core/options.h"
 

@@ -46,7 +46,7 @@ std::string far_apart(std::span<const PlacedScan> scans) {
             const double size = std::max(diagonal(below), diagonal(above[i]));
             if (gap > 0 && gap > kFar * size)
                 return fmt::format(
-                    "{} and {} lie {:.3g} times as far apart as they are large: one of them may have local "
+                    "{} and {} lie {:.0f} times as far apart as they are large: one of them may have local "
                     "coordinates; open them one by one",
                     placed[i - 1]->name, placed[i]->name,
                     gap / std::max(size, std::numeric_limits<double>::min()));
