@@ -59,7 +59,7 @@ Result<void> check_scene(const ViewOptions& options) {
 }
 
 /// Recognises a project among the inputs, and reports its errors before a window opens. Errors: it is not the
-/// only input; other options say what to show; none of its scans is there.
+/// only input; other options say what to show; without a user to ask, none of its scans is there.
 Result<void> take_project(ViewOptions& options) {
     auto& paths = options.input.paths;
     const auto found = std::ranges::find_if(paths, [](const std::string& path) {
@@ -72,9 +72,9 @@ Result<void> take_project(ViewOptions& options) {
     LUCARNE_ASSIGN(const Project project, read_project(*found, std::nullopt));
     const std::filesystem::path file = absolute_path(*found);
     const FoundScans scans = find_scans(project.scans, file.parent_path());
-    if (scans.found.empty())
-        return rejected(*found, scans.missing.empty() ? "names no scan" : "none of its scans was found",
-                        "put them beside it");
+    if (scans.found.empty() && scans.missing.empty()) return rejected(*found, "names no scan");
+    if (scans.found.empty() && !options.screenshot.empty())
+        return rejected(*found, "none of its scans was found", "put them beside it");
     options.project = *found;
     paths.clear();
     return {};

@@ -30,6 +30,8 @@ class KeptProject {
 
     /// Declares the file whose project the next scans belong to, and those of its scans that are missing.
     void use(std::filesystem::path file, std::vector<std::string> missing);
+    /// Declares which of its scans are still missing after others of them have been opened.
+    void still_missing(std::vector<std::string> missing) { missing_ = std::move(missing); }
     /// Call when scans have been placed in the window for the first time: shows the work that was kept on
     /// them. Returns whether there was any; then view, light and engine are the project's.
     bool open(const octree::NodeSource& source);

@@ -7,6 +7,7 @@
 #include "viewer/bookmarks/bookmarking.h"
 #include "viewer/light/lighting.h"
 #include "viewer/measure/measuring.h"
+#include "viewer/project/missing_scans.h"
 #include "viewer/publish/publishing.h"
 #include "viewer/rendering/rendering.h"
 #include "viewer/scans/scan_commands.h"
@@ -75,8 +76,9 @@ struct ViewModel {
     ScanSet* scans = nullptr;  ///< the open scans; outlive the model
     ScanCommands scan_commands;
     CommandQueue<SaveScene, SavePicture, Close, OpenProject> commands;
-    FileQuestion scene_name;    ///< the scene's file, as asked for by "Save scene as..."
-    FileQuestion project_name;  ///< the project's file, as asked for by "Save project as..."
+    FileQuestion scene_name;     ///< the scene's file, as asked for by "Save scene as..."
+    FileQuestion project_name;   ///< the project's file, as asked for by "Save project as..."
+    MissingScans missing_scans;  ///< of the project that was opened last
     ExportChoice exporting;
     ClosingQuestion closing;
     Settings settings;  ///< of the window; its side bar's are in `view`

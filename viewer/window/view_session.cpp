@@ -204,19 +204,28 @@ void ViewSession::open_project() {
     if (project_.open(*scans_.source())) own_scene_ = 0;  // more points change nothing
 }
 
-/// Replaces the open scans and the work on them by those of a project's file. Errors: those of the file; none
+/// Replaces the open scans and the work on them by those of a project's file. Scans that are not where they
+/// were are looked for in `folder`; if some are missing, the user is asked. Errors: those of the file; none
 /// of its scans is there; work would be lost. Then nothing changes.
-Result<void> ViewSession::change_project(const std::filesystem::path& file) {
+Result<void> ViewSession::change_project(const std::filesystem::path& file,
+                                         const std::filesystem::path& folder) {
     LUCARNE_ASSIGN(const Project project, read_project(file, std::nullopt));
-    FoundScans scans = find_scans(project.scans, file.parent_path());
-    if (scans.found.empty())
-        return failed(file.string(), scans.missing.empty() ? "names no scan" : "none of its scans was found",
-                      "put them beside it");
+    FoundScans scans = find_scans(project.scans, folder);
+    if (scans.found.empty()) {
+        if (scans.missing.empty()) return failed(file.string(), "names no scan");
+        if (!shot_ && !model_.missing_scans.shown)
+            model_.missing_scans.ask(file, std::move(scans.missing), false);
+        return failed(file.string(), "none of its scans was found", "put them beside it");
+    }
     model_.closing.kept = project_.keep();
     if (!work_to_lose(model_).empty())
         return failed(file.string(), "is not opened while other work is unsaved", "save that first");
     const std::vector<ScanRow> rows = scans_.rows();
     for (const ScanRow& row : rows) scans_.remove(row.id);
+    if (!shot_ && !scans.missing.empty())
+        model_.missing_scans.ask(file, scans.missing, true);
+    else
+        model_.missing_scans.shown = false;
     project_.use(file, std::move(scans.missing));
     placed_ = sure_ = false;
     model_.measure.stop();
@@ -229,7 +238,8 @@ Result<void> ViewSession::change_project(const std::filesystem::path& file) {
 
 void ViewSession::open_project_file(const std::filesystem::path& path) {
     const std::string file = absolute_path(path.string());
-    if (const auto done = change_project(file); !done) {
+    model_.missing_scans.shown = false;
+    if (const auto done = change_project(file, std::filesystem::path(file).parent_path()); !done) {
         log::warn("{}", model_.view.message = done.error().line());
         return;
     }
@@ -237,6 +247,25 @@ void ViewSession::open_project_file(const std::filesystem::path& path) {
     model_.project_name.file = file;
     model_.settings.opened(file);
     settings_.save();
+}
+
+/// Looks for the missing scans of a project in the folder that the user has named.
+void ViewSession::open_missing_scans() {
+    MissingScans& question = model_.missing_scans;
+    const auto folder = question.take_answer();
+    if (!folder) return;
+    if (!question.others_open) {
+        const auto done = change_project(question.project, *folder);
+        if (!done) question.problem = done.error().why;
+        return;
+    }
+    ScanGroups missing;
+    for (const std::string& path : question.paths) missing.push_back({path});
+    FoundScans scans = find_scans(missing, *folder);
+    question.problem = scans.found.empty() ? "None of them is there." : "These are still missing.";
+    question.shown = !scans.missing.empty();
+    for (auto& group : scans.found) scans_.open(std::move(group), true);
+    project_.still_missing(question.paths = std::move(scans.missing));
 }
 
 void ViewSession::save_project() {
@@ -346,7 +375,7 @@ void ViewSession::take_input() {
     if (model_.closing.shown)
         closing_.answer(keys);
     else if (!io.WantTextInput && !menu && !files_.asks() && !model_.project_name.shown &&
-             !model_.exporting.name.shown)
+             !model_.missing_scans.shown && !model_.exporting.name.shown)
         run_actions(actions_, keys);
     if (legend_.take(model_.styling()) || take_clip_handles(model_.styling()) ||
         take_comparison_border(model_.rendering()) || take_light_handles(model_.lighting()))
@@ -372,6 +401,7 @@ void ViewSession::draw_panels() {
     if (scans_.rows().empty()) draw_start_page(model_);
     files_.draw();
     draw_closing_question(model_);
+    draw_missing_scans(model_.missing_scans);
     draw_file_question("Save project", model_.project_name);
     export_.draw();
     measure_.draw(model_.measuring());
@@ -460,6 +490,7 @@ Result<void> ViewSession::carry_out() {
         [&](const OpenProject& open) { open_project_file(open.file); },
     };
     for (const auto& command : model_.commands.take()) std::visit(run, command);
+    open_missing_scans();
     save_project();
     export_.follow();
     return save_shot();

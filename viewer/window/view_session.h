@@ -84,7 +84,8 @@ class ViewSession {
     void take_extent();
     void open_project();
     void open_project_file(const std::filesystem::path& file);
-    Result<void> change_project(const std::filesystem::path& file);
+    Result<void> change_project(const std::filesystem::path& file, const std::filesystem::path& folder);
+    void open_missing_scans();
     void save_project();
     bool changed_by_user() const;
     void take_input();

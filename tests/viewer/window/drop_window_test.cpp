@@ -87,12 +87,19 @@ TEST_F(DroppedFiles, ThatAreProjectsReplaceWhatIsOpen) {
     EXPECT_TRUE(title_comes("cornell.luc")) << "what was open stays";
     ASSERT_EQ(drop(uri(project)).code, 0);
     EXPECT_TRUE(title_comes("second.las")) << log();
+    // The window asks where the other one is now.
+    const std::string place = folder_ / "elsewhere";
+    std::filesystem::create_directory(place);
+    std::filesystem::copy(second, place + "/gone.las");
+    xdo("sleep 1 key ctrl+a sleep 0.3 type '" + place + "'");
+    xdo("sleep 1 key Return");
+    EXPECT_TRUE(title_comes("1 more")) << title() << log();
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *before) > 2; })) << log();
     EXPECT_THAT(log(), HasSubstr("rooms.json: scans not found: /nowhere/gone.las"));
     xdo("key Insert sleep 0.5 key alt+F4");
     EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
     const std::string kept = bytes_of(project);
-    for (const std::string& part : {second, std::string("/nowhere/gone.las"), std::string("\"flythrough\"")})
+    for (const std::string& part : {second, place + "/gone.las", std::string("\"flythrough\"")})
         EXPECT_THAT(kept, HasSubstr(part));
     EXPECT_EQ(bytes_of(newer), R"({"version": 2, "scans": 7})");
     EXPECT_THAT(bytes_of(folder_ / "config/settings.json"), HasSubstr(project));

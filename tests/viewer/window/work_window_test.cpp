@@ -117,7 +117,7 @@ TEST_F(WindowWithProject, IsSavedUnderANameAndFindsScansThatWereMovedWithIt) {
     const Outcome two = lucarne("view " + moved + "/p.json " + moved + "/cornell.luc");
     EXPECT_EQ(two.code, 2) << two.output;
     std::filesystem::remove(moved + "/cornell.luc");
-    const Outcome gone = lucarne("view " + moved + "/p.json");
+    const Outcome gone = lucarne("view " + moved + "/p.json --screenshot " + moved + "/p.png");
     EXPECT_EQ(gone.code, 3) << gone.output;
     EXPECT_THAT(gone.output, HasSubstr("p.json: none of its scans was found"));
 }

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "viewer/project/missing_scans.h"
 #include "viewer/ui/action.h"
 #include "viewer/window/view_model.h"
 
@@ -11,6 +12,7 @@ void draw_menu_bar(ViewModel& model, std::span<const BoundAction> actions);
 
 void draw_start_page(ViewModel& model);        ///< shown with nothing open
 void draw_closing_question(ViewModel& model);  ///< lists unsaved and running work
+void draw_missing_scans(MissingScans& question);
 
 /// Draws the open sections: panels of the features, and those below. Before the first view, draws only the
 /// sections that need no view.

@@ -1,0 +1,42 @@
+// The question where a project's scans are.
+#include <algorithm>
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "viewer/window/panels/panels.h"
+
+namespace lucarne::viewer {
+
+void draw_missing_scans(MissingScans& question) {
+    constexpr const char* kTitle = "Where are these scans?";
+    constexpr size_t kMostListed = 8;
+    if (question.shown && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
+    if (!ImGui::BeginPopupModal(kTitle, nullptr, flags)) return;
+    const float width = std::min(36 * ImGui::GetFontSize(), size.x - 4 * ImGui::GetFontSize());
+    ImGui::PushTextWrapPos(width);
+    ImGui::Text("%s needs:", question.project.filename().c_str());
+    const size_t listed = std::min(question.paths.size(), kMostListed);
+    for (size_t i = 0; i < listed; ++i) ImGui::BulletText("%s", question.paths[i].c_str());
+    if (listed < question.paths.size()) ImGui::BulletText("%zu more", question.paths.size() - listed);
+    ImGui::TextUnformatted("Folder in which they are now:");
+    ImGui::SetNextItemWidth(width);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText("##folder", &question.folder, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (!question.problem.empty()) ImGui::TextUnformatted(question.problem.c_str());
+    ImGui::PopTextWrapPos();
+    if ((ImGui::Button("Look there (Enter)") || entered) && !question.folder.empty())
+        question.answer = question.folder;
+    ImGui::SameLine();
+    const bool escape = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    if (ImGui::Button(question.others_open ? "Go on without (Escape)" : "Cancel (Escape)") || escape)
+        question.shown = false;
+    if (!question.shown) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+}  // namespace lucarne::viewer
