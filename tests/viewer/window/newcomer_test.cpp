@@ -222,7 +222,9 @@ TEST_F(NewcomerWithAMouse, SeesARoomInEveningLightMeasuresItSavesAPictureAndFind
     ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "lucarne-0002.png"); })) << log();
     const auto saved = io::read_png(folder_ / "lucarne-0002.png");
     ASSERT_TRUE(saved);
-    EXPECT_TRUE(nearer(*saved, *lamps, *colours));
+    EXPECT_TRUE(nearer(*saved, *lamps, *colours)) << difference(*saved, *lamps) << " from the evening, "
+                                                  << difference(*saved, *colours) << " from scan colours\n"
+                                                  << log();
 
     quit();  // step 5
     EXPECT_THAT(log(), testing::Not(HasSubstr("asked whether to close"))) << "nothing would be lost";
