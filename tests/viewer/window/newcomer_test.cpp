@@ -218,9 +218,13 @@ TEST_F(NewcomerWithAMouse, SeesARoomInEveningLightMeasuresItSavesAPictureAndFind
         ++clicks;
         return false;
     })) << log();
+    // Where the window is slow, picture() pressed its key more than once and has left older pictures.
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+        if (entry.path().extension() == ".png") std::filesystem::remove(entry.path());
     choose("Save the picture as PNG");  // step 4
-    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "lucarne-0002.png"); })) << log();
-    const auto saved = io::read_png(folder_ / "lucarne-0002.png");
+    const std::string shot = folder_ / "lucarne-0001.png";
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(shot); })) << log();
+    const auto saved = io::read_png(shot);
     ASSERT_TRUE(saved);
     EXPECT_TRUE(nearer(*saved, *lamps, *colours)) << difference(*saved, *lamps) << " from the evening, "
                                                   << difference(*saved, *colours) << " from scan colours\n"
