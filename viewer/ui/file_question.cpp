@@ -6,6 +6,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "viewer/ui/popups.h"
+
 namespace lucarne::viewer {
 
 void FileQuestion::confirm() {
@@ -20,13 +22,9 @@ void FileQuestion::confirm() {
 }
 
 void draw_file_question(const char* title, FileQuestion& question, const std::function<void()>& fields) {
-    if (question.shown && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    const ImGuiWindowFlags flags =
-        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
-    if (!ImGui::BeginPopupModal(title, nullptr, flags)) return;
-    const float width = std::min(36 * ImGui::GetFontSize(), size.x - 4 * ImGui::GetFontSize());
+    if (!begin_question(title, question.shown)) return;
+    const float room = ImGui::GetIO().DisplaySize.x;
+    const float width = std::min(36 * ImGui::GetFontSize(), room - 4 * ImGui::GetFontSize());
     ImGui::PushTextWrapPos(width);
     ImGui::SetNextItemWidth(width);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();

@@ -16,4 +16,13 @@ bool close_popups() {
     return true;
 }
 
+bool begin_question(const char* title, bool shown) {
+    if (shown && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    return ImGui::BeginPopupModal(
+        title, nullptr,
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+}
+
 }  // namespace lucarne::viewer

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "viewer/scans/scan_set.h"
+#include "viewer/ui/popups.h"
 #include "viewer/window/panels/panels.h"
 #include "viewer/window/unsaved.h"
 
@@ -47,14 +48,10 @@ void buttons(ClosingQuestion& question, bool any_unsaved) {
 void draw_closing_question(ViewModel& model) {
     constexpr const char* kName = "Close Lucarne?";
     ClosingQuestion& question = model.closing;
-    if (question.shown && !ImGui::IsPopupOpen(kName)) ImGui::OpenPopup(kName);
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    const ImGuiWindowFlags flags =
-        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
-    if (!ImGui::BeginPopupModal(kName, nullptr, flags)) return;
+    if (!begin_question(kName, question.shown)) return;
+    const float room = ImGui::GetIO().DisplaySize.x;
     const std::vector<Unsaved> all = work_to_lose(model);
-    ImGui::PushTextWrapPos(std::min(40 * ImGui::GetFontSize(), size.x - 4 * ImGui::GetFontSize()));
+    ImGui::PushTextWrapPos(std::min(40 * ImGui::GetFontSize(), room - 4 * ImGui::GetFontSize()));
     if (!all.empty()) list_unsaved(all);
     list_running(model);
     if (!question.problem.empty()) {

@@ -4,6 +4,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "viewer/ui/popups.h"
 #include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
@@ -11,13 +12,9 @@ namespace lucarne::viewer {
 void draw_missing_scans(MissingScans& question) {
     constexpr const char* kTitle = "Where are these scans?";
     constexpr size_t kMostListed = 8;
-    if (question.shown && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-    const ImGuiWindowFlags flags =
-        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
-    if (!ImGui::BeginPopupModal(kTitle, nullptr, flags)) return;
-    const float width = std::min(36 * ImGui::GetFontSize(), size.x - 4 * ImGui::GetFontSize());
+    if (!begin_question(kTitle, question.shown)) return;
+    const float room = ImGui::GetIO().DisplaySize.x;
+    const float width = std::min(36 * ImGui::GetFontSize(), room - 4 * ImGui::GetFontSize());
     ImGui::PushTextWrapPos(width);
     ImGui::Text("%s needs:", question.project.filename().c_str());
     const size_t listed = std::min(question.paths.size(), kMostListed);
