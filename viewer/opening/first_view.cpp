@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kOutsideFov = glm::radians(50.0);
 constexpr double kInsideFov = glm::radians(62.0);
+constexpr double kOnGround = 1.7;        ///< height of the eye above the ground, m
+constexpr double kCellsOfOutline = 128;  ///< along the longest side, unless the scan has few points
 constexpr double kTerrainPitch = glm::radians(35.0);
 /// Largest pitch of the view along a room, toward the middle of its height.
 constexpr double kMostPitch = glm::radians(8.0);
@@ -91,6 +93,22 @@ gi::SceneCamera inside_view(const Site& site, const PictureShape& shape) {
     camera.target = place.eye + glm::dvec3(std::cos(yaw) * std::cos(pitch), std::sin(yaw) * std::cos(pitch),
                                            std::sin(pitch)) *
                                     (place.free_ahead / 2);
+    return camera;
+}
+
+gi::SceneCamera ground_view(const Site& site, const PictureShape& shape) {
+    const glm::dvec3 sides = site.box[1] - site.box[0];
+    // The outline has cells of the grid: the ground may lie half of one above its middle.
+    const double rise =
+        kOnGround / site.metres_per_unit + std::max({sides.x, sides.y, sides.z}) / kCellsOfOutline;
+    gi::SceneCamera camera;
+    camera.name = "ground";
+    camera.vertical_fov = kInsideFov;
+    camera.position = *std::ranges::max_element(site.outline, {}, &glm::dvec3::z) + glm::dvec3(0, 0, rise);
+    const double azimuth = fullest_azimuth(site, camera.position, std::tan(kInsideFov / 2) * shape.aspect);
+    const double distance = std::max(glm::distance(site.box[0], site.box[1]) / 4, kLeastSpan);
+    camera.target =
+        camera.position + distance * glm::dvec3(std::cos(azimuth), std::sin(azimuth), -std::tan(kMostPitch));
     return camera;
 }
 

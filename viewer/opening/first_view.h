@@ -11,6 +11,9 @@ namespace lucarne::viewer {
 gi::SceneCamera outside_view(const Site& site, const PictureShape& shape);
 /// Returns the camera at the standing place, which looks along the room. Requires site.inside.
 gi::SceneCamera inside_view(const Site& site, const PictureShape& shape);
+/// Returns the camera of a person on the highest ground of a site, who looks to the side where most of it is,
+/// a little down.
+gi::SceneCamera ground_view(const Site& site, const PictureShape& shape);
 /// Returns the camera that sees a site as the scanner did, where nothing is hidden from it: before it, if all
 /// lies on one side of the scanner; else from the scanner to the side where most is. Requires site.station.
 gi::SceneCamera station_view(const Site& site, const PictureShape& shape);

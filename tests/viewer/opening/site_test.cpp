@@ -354,6 +354,22 @@ TEST(Site, RealRoomsAreKnownFromTheFirstPointsOfACompressedFileAndKeepTheViewOfT
     }
 }
 
+TEST(FirstView, OneStandsOnTheHighestGroundOfATerrain) {
+    for (const double unit : {1.0, .3048}) {
+        std::vector<dvec3> points = terrain(50000);
+        for (dvec3& p : points) p /= unit;
+        const Site site = survey_site(points, {dvec3(0, 0, -20) / unit, dvec3(400, 400, 20) / unit}, unit);
+        const gi::SceneCamera camera = ground_view(site, {1.6, {}});
+        const dvec3 eye = camera.position * unit;
+        const double ground = 20 * std::sin(eye.x / 60) * std::cos(eye.y / 80);
+        EXPECT_GT(ground, 18) << "the top of a hill";
+        EXPECT_GT(eye.z - ground, 1.7);
+        EXPECT_LT(eye.z - ground, 8);
+        const dvec3 middle = dvec3(200, 200, 0) - eye, ahead = camera.target * unit - eye;
+        EXPECT_GT(middle.x * ahead.x + middle.y * ahead.y, 0) << "toward the larger part";
+    }
+}
+
 TEST(Site, GapsMakeNoRoomsOfWhatIsOutside) {
     std::vector<dvec3> points;
     const Box house = {dvec3(0, 0, 0), dvec3(12, 9, 4)};

@@ -133,13 +133,22 @@ TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     ImGui::DestroyContext();
 }
 
-TEST(Actions, GoInsideIsOnlyPossibleWhereARoomWasFound) {
+TEST(Actions, GoInsideIsOnlyPossibleWhereARoomOrGroundWasFound) {
+    ImGui::CreateContext();  // the picture's free part depends on the size of its texts
     ViewModel model(10);
     for (const BoundAction& action : bound_actions(model)) {
         if (std::string(action.name) != "Go inside") continue;
         EXPECT_FALSE(action.enabled());
         model.view.site.inside.emplace();
         EXPECT_TRUE(action.enabled());
+        model.view.site.inside.reset();
+        model.view.site.kind = SiteKind::terrain;
+        model.view.site.box = {glm::dvec3(0), glm::dvec3(100, 100, 8)};
+        model.view.site.outline = {{10, 20, 8}, {90, 80, 0}};
+        ASSERT_TRUE(action.enabled()) << "on the ground";
+        action.run();
+        EXPECT_FALSE(model.view.inside());
+        ImGui::DestroyContext();
         return;
     }
     FAIL() << "there is no such action";

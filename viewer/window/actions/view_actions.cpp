@@ -28,12 +28,16 @@ void light_place(ViewModel& model) {
     model.history.without_step(model, [&] { light_for_place(model.lighting()); });
 }
 void go_inside(ViewModel& model) {
+    if (!model.view.site.inside) {
+        model.view.go_to(ground_view(model.view.site, picture_shape(model.view.side_bar)));
+        return;
+    }
     model.view.entered = true;
     model.view.go_to(inside_view(model.view.site, picture_shape(model.view.side_bar)));
     light_place(model);
 }
 bool has_inside(const ViewModel& model) {
-    return model.view.site.inside.has_value();
+    return model.view.site.inside || model.view.site.kind == SiteKind::terrain;
 }
 void go_outside(ViewModel& model) {
     model.view.entered = false;
