@@ -242,17 +242,19 @@ void GrowingBuild::State::grow() {
         std::max(options.sample_points, std::min(kMostGrown, sample.points.points / kLeastPerPoint));
     uint64_t points = options.first_points, read = options.first_read;
     QuickSample fronts = sample.points;
-    const auto start = Clock::now();
+    const auto seconds = [start = Clock::now()] {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    };
     while (!grown && (points < most || !passed)) {
         {
-            const double pause = passed ? kSecondsBetweenRounds : kSecondsBetweenPassRounds;
+            // What has been read grows with time: an earlier round would find too little to be shown.
+            const double pause = passed ? kSecondsBetweenRounds
+                                        : std::max(kSecondsBetweenPassRounds, (kGrowth - 1) * seconds());
             std::unique_lock lock(grower_mutex);
             grower_wakes.wait_for(lock, std::chrono::duration<double>(pause), [&] { return grown.load(); });
         }
         if (grown) return;
-        const bool more =
-            passed || std::chrono::duration<double>(Clock::now() - start).count() > kSecondsOfPass;
-        if (more && points < most) {
+        if ((passed || seconds() > kSecondsOfPass) && points < most) {
             points = std::min(2 * points, most);
             read *= 2;
             auto taken = arena.execute([&] {

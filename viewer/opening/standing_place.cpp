@@ -38,10 +38,10 @@ constexpr double kLeastOpen = .05;
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
 constexpr size_t kPlacesPerTask = 64;
 constexpr int kAzimuths = 24;
-constexpr size_t kViews = 16;          ///< that are compared
-constexpr double kBetweenViews = 1.5;  ///< distance between their places, at least
-constexpr double kWorthAView = .5;     ///< share of the best score
-constexpr double kStepBack = .2;
+constexpr size_t kViews = 16;             ///< that are compared
+constexpr double kBetweenViews = 1.5;     ///< distance between their places, at least
+constexpr double kWorthAView = .5;        ///< share of the best score
+constexpr double kStepBack = .2;          ///< length of a step, at least
 constexpr double kNearlyAsGood = .85;     ///< share of the most space ahead
 constexpr glm::dvec2 kPreferred{.8, .6};  ///< along no wall of most rooms
 constexpr double kWalled = .8;            ///< share of blocked directions from which a place is in a room
@@ -136,7 +136,7 @@ double preference(const glm::dvec3& v) {
 /// A view of a room.
 struct RoomView {
     glm::dvec3 eye{0.0}, ahead{0.0};
-    double space = 0;  ///< that a picture shows, as a length
+    double space = 0;  ///< how much of it a picture shows: a score
 };
 
 /// Finds where to stand near a place and the horizontal direction in which a picture from there shows the

@@ -265,7 +265,8 @@ void ViewSession::open_missing_scans() {
     question.problem = scans.found.empty() ? "None of them is there." : "These are still missing.";
     question.shown = !scans.missing.empty();
     for (auto& group : scans.found) scans_.open(std::move(group), true);
-    project_.still_missing(question.paths = std::move(scans.missing));
+    question.paths = std::move(scans.missing);
+    project_.still_missing(question.paths);
 }
 
 void ViewSession::save_project() {
