@@ -32,12 +32,13 @@ glm::dvec3 turn(const Turn& by, const glm::dvec3& v) {
     return {by.sign[0] * v[by.from[0]], by.sign[1] * v[by.from[1]], by.sign[2] * v[by.from[2]]};
 }
 
-/// Returns -value. The least integer has no counterpart and becomes the largest, one step away.
+/// Returns -value; 0, never -0, for 0. The least integer has no counterpart and becomes the largest, one step
+/// away.
 template <class T>
 T negative(T value) {
     if constexpr (std::is_integral_v<T>)
         if (value == std::numeric_limits<T>::min()) return std::numeric_limits<T>::max();
-    return -value;
+    return T{0} - value;
 }
 
 /// Turns three numbers in place.

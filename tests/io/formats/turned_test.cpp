@@ -1,5 +1,6 @@
 #include "io/formats/turned.h"
 
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -58,6 +59,7 @@ TEST_F(Turned, TheGivenAxisPointsUpAndNothingIsMirrored) {
             n[i] =
                 scalar_at(normal->type,
                           &batch.bytes[normal->offset + static_cast<size_t>(i) * scalar_bytes(normal->type)]);
+        for (int i = 0; i < 3; ++i) EXPECT_FALSE(n[i] == 0 && std::signbit(n[i])) << name << ": prints as -0";
         EXPECT_NEAR(dot(n, position), dot(dvec3(0, .6, .8), dvec3(1, 2, 3)), 1e-6) << name;
     }
     EXPECT_FALSE(up_axis("w"));
