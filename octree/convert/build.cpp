@@ -295,15 +295,19 @@ Result<void> open_workspace(const BuildOptions& options, const Unifier& inputs, 
     return take_over(*held.work, held.left, ranks, inputs, options, memory);
 }
 
+std::filesystem::path scratch_folder(const BuildOptions& options) {
+    return !options.temp_folder.empty()       ? options.temp_folder
+           : options.output.has_parent_path() ? options.output.parent_path()
+                                              : std::filesystem::path(".");
+}
+
 /// Builds the cache; of several ranks each does its part.
 Result<BuildReport> build(const BuildOptions& options, Held& held) {
     LUCARNE_TRY(check_output(options.output, options.overwrite));
     const unsigned threads =
         options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
     const ThreadLimit limit(threads);
-    const auto folder = !options.temp_folder.empty()       ? options.temp_folder
-                        : options.output.has_parent_path() ? options.output.parent_path()
-                                                           : std::filesystem::path(".");
+    const auto folder = scratch_folder(options);
     LUCARNE_ASSIGN(const Unifier inputs,
                    Unifier::create(options.inputs, options.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(inputs));
@@ -419,6 +423,10 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     if (options.ranks) LUCARNE_TRY(meet(*options.ranks));
     held.work->done();
     return report;
+}
+
+bool is_being_built(const BuildOptions& options) {
+    return Workspace::in_use(scratch_folder(options), options.output);
 }
 
 }  // namespace lucarne::octree

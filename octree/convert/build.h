@@ -67,4 +67,8 @@ struct BuildReport {
 /// 0.
 Result<BuildReport> build_cache(const BuildOptions& options);
 
+/// Returns whether a resumable build of the same output is running, in this process or another one of this
+/// machine.
+bool is_being_built(const BuildOptions& options);
+
 }  // namespace lucarne::octree

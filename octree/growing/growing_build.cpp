@@ -498,4 +498,8 @@ BuildState GrowingBuild::state() const {
     return state_->now;
 }
 
+bool GrowingBuild::is_built_elsewhere() const {
+    return is_being_built(state_->options.build);
+}
+
 }  // namespace lucarne::octree

@@ -71,6 +71,9 @@ class GrowingBuild {
     void seen(const NodeSource* source);
 
     BuildState state() const;
+    /// Returns whether the output is being built by another GrowingBuild or process. Call after this build
+    /// has ended.
+    bool is_built_elsewhere() const;
 
  private:
     GrowingBuild();

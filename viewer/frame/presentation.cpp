@@ -41,19 +41,22 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     mean_shown_ = averaged_ || edges_;
     points_apart_ = keeps_apart(scene, averaging);
     if (mean_shown_) LUCARNE_TRY(add_to_average(own_, gbuffer));
-    LUCARNE_TRY(expose(engine, scene, gbuffer));
+    if (other && mean_shown_) LUCARNE_TRY(add_to_average(other_, gbuffer));
+    const bool by_other = engine.info().unlit && other && !other->info().unlit;
+    LUCARNE_TRY(expose(by_other ? *other : engine, by_other ? other_ : own_, scene, gbuffer));
     LUCARNE_TRY(show(engine, scene, pixels, own_));
-    if (other) LUCARNE_TRY(compare(*other, scene, gbuffer));
+    if (other) LUCARNE_TRY(compare(*other, scene, pixels, gbuffer.width));
     LUCARNE_TRY(
         gi::draw_backdrop(device_, gbuffer, radiance(), mean_shown_, scene.look.backdrop, own_.picture));
     if (averaging.gaps == 0) return {};
     return gi::fill_gaps(device_, gbuffer, radiance(), mean_shown_, averaging.gaps, own_.picture);
 }
 
-Result<void> Presentation::expose(const gi::Engine& engine, const gi::Scene& scene,
+/// Finds the exposure of one engine's light.
+Result<void> Presentation::expose(const gi::Engine& lit_by, const Images& images, const gi::Scene& scene,
                                   const gi::GBuffer& gbuffer) {
     const auto before = std::exchange(exposed_, std::nullopt);
-    if (engine.info().unlit) {  // its colours are for the screen already
+    if (lit_by.info().unlit) {  // its colours are for the screen already
         exposure_ = {};
         return {};
     }
@@ -62,8 +65,8 @@ Result<void> Presentation::expose(const gi::Engine& engine, const gi::Scene& sce
         exposure_ = {*scene.exposure_ev, 0, balance};
         return {};
     }
-    LUCARNE_ASSIGN(const gi::Exposure measured,
-                   gi::automatic_exposure(device_, radiance(), gbuffer, scene.tone_map, balance));
+    LUCARNE_ASSIGN(const gi::Exposure measured, gi::automatic_exposure(device_, images.radiance(mean_shown_),
+                                                                       gbuffer, scene.tone_map, balance));
     exposed_ = std::chrono::steady_clock::now();
     const double passed = before ? std::chrono::duration<double>(*exposed_ - *before).count() : 0;
     const bool at_once = !before || !(exposure_seconds_ > 0);
@@ -93,17 +96,15 @@ Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene
 }
 
 /// Combines the picture with the other engine's light.
-Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& scene,
-                                   const gi::GBuffer& gbuffer) {
+Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& scene, uint32_t pixels,
+                                   uint32_t width) {
     using Show = gi::Comparison::Show;
-    const uint32_t pixels = gbuffer.width * gbuffer.height;
-    if (mean_shown_) LUCARNE_TRY(add_to_average(other_, gbuffer));
     const gi::Comparison& how = *scene.comparison;
     if (how.show != Show::split)
         return gi::difference(device_, radiance(), other_.radiance(mean_shown_), pixels,
                               how.show == Show::absolute_difference, exposure_.ev, how.range, own_.picture);
     LUCARNE_TRY(show(other, scene, pixels, other_));
-    return gi::split(device_, other_.picture, gbuffer.width, gbuffer.height, how.border, own_.picture);
+    return gi::split(device_, other_.picture, width, pixels / width, how.border, own_.picture);
 }
 
 }  // namespace lucarne::viewer

@@ -75,9 +75,10 @@ class Presentation {
 
     static bool keeps_apart(const gi::Scene& scene, const Averaging& averaging);
     Result<void> add_to_average(Images& images, const gi::GBuffer& gbuffer);
-    Result<void> expose(const gi::Engine& engine, const gi::Scene& scene, const gi::GBuffer& gbuffer);
+    Result<void> expose(const gi::Engine& lit_by, const Images& images, const gi::Scene& scene,
+                        const gi::GBuffer& gbuffer);
     Result<void> show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels, Images& images);
-    Result<void> compare(const gi::Engine& other, const gi::Scene& scene, const gi::GBuffer& gbuffer);
+    Result<void> compare(const gi::Engine& other, const gi::Scene& scene, uint32_t pixels, uint32_t width);
 
     gi::Device& device_;
     Images own_, other_;  ///< of the picture's engine and of the compared engine

@@ -16,9 +16,10 @@ struct MissingScans {
     bool others_open = false;  ///< the rest of the project is shown
     std::string folder;        ///< as typed
     std::string problem;       ///< why the last answer failed
+    bool browses = false;      ///< asks for the folder with the desktop's dialog
 
     void ask(std::filesystem::path file, std::vector<std::string> missing, bool others) {
-        *this = {true, std::move(file), std::move(missing), others, {}, {}, {}};
+        *this = {true, std::move(file), std::move(missing), others, {}, {}, false, {}};
         folder = project.parent_path().string();
     }
     /// Returns the folder to look in, once.

@@ -55,6 +55,13 @@ std::vector<std::string> NativeDialog::command(const std::string& program, const
             "--file-filter=All files | *"};
 }
 
+std::vector<std::string> NativeDialog::folder_command(const std::string& program, const std::string& folder) {
+    if (program == "kdialog")
+        return {"kdialog", "--title", "Folder of the scans", "--getexistingdirectory", folder};
+    return {"zenity", "--file-selection", "--directory", "--title=Folder of the scans",
+            "--filename=" + folder + "/"};
+}
+
 std::vector<std::string> NativeDialog::chosen(const std::string& output) {
     std::vector<std::string> lines;
     std::istringstream text(output);

@@ -8,14 +8,15 @@
 
 namespace lucarne::viewer {
 
-/// The desktop's dialog for opening files: zenity (GNOME and most others) or kdialog (KDE), run as a separate
-/// process. The window keeps drawing meanwhile.
+/// The desktop's dialog for opening files or choosing a folder: zenity (GNOME and most others) or kdialog
+/// (KDE), run as a separate process. The window keeps drawing meanwhile.
 class NativeDialog {
  public:
     /// Returns the installed dialog programs, the running desktop's own first.
     static std::vector<std::string> programs();
-    /// Returns the program and its arguments.
+    /// Returns the program and its arguments, to choose scans, or the folder where some are.
     static std::vector<std::string> command(const std::string& program, const std::string& folder);
+    static std::vector<std::string> folder_command(const std::string& program, const std::string& folder);
     /// Splits the program's output into lines.
     static std::vector<std::string> chosen(const std::string& output);
 

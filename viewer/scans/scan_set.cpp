@@ -275,15 +275,18 @@ void ScanSet::open_again(ScanRow& row, Item& item) {
     push_opening(row.id, std::move(how), true, kSamplePoints);
 }
 
-/// A window that opens a scan while another one converts it stops, since both would write one cache.
+/// A window that opens a scan while another one converts it leaves that to it, since both would write one
+/// cache. It converts the scan itself if the other window is closed before its cache is finished.
 void ScanSet::take_caches_of_others() {
     const auto now = std::chrono::steady_clock::now();
     if (now - looked_ < kBetweenLooks) return;
     looked_ = now;
     for (ScanRow& row : rows_) {
-        if (row.state != ScanState::stopped) continue;
+        if (row.state != ScanState::stopped && row.state != ScanState::elsewhere) continue;
         Item& item = items_[row.id];
-        if (!item.input.cache.empty() && time_of(item.input.cache) != item.cache_time) open_again(row, item);
+        const bool finished = !item.input.cache.empty() && time_of(item.input.cache) != item.cache_time;
+        const bool free = row.state == ScanState::elsewhere && !item.input.build->is_built_elsewhere();
+        if (finished || free) open_again(row, item);
     }
 }
 
@@ -377,6 +380,8 @@ void ScanSet::take_builds() {
         if (build.finished) {
             row.state = ScanState::whole;
             item.input.build.reset();  // its thread has finished
+        } else if (!build.error && !build.stopped && item.input.build->is_built_elsewhere()) {
+            row.state = ScanState::elsewhere;
         } else if (!build.error) {
             row.state = ScanState::stopped;
             if (!build.stopped) row.error = std::move(build.error).error();

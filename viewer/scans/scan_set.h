@@ -27,6 +27,7 @@ enum class ScanState {
     opening,     ///< being opened; nothing can be drawn yet
     sample,      ///< a sample is drawn; the conversion waits for its turn
     converting,  ///< finished parts are drawn, and the sample elsewhere
+    elsewhere,   ///< a sample is drawn, and another program converts the scan
     stopped,     ///< the conversion was stopped or failed; go_on() continues it
     whole,       ///< a complete octree
     failed       ///< it could not be opened
@@ -50,7 +51,8 @@ struct ScanRow {
 
     std::string name() const;  ///< the folder or first file, and the number of files
     bool busy() const {
-        return state == ScanState::opening || state == ScanState::sample || state == ScanState::converting;
+        return state == ScanState::opening || state == ScanState::sample || state == ScanState::converting ||
+               state == ScanState::elsewhere;
     }
 };
 
@@ -93,8 +95,9 @@ class ScanSet {
     /// Says that a picture of source() has been made: conversions may wait for it.
     void seen();
 
-    /// Applies finished background jobs; call once per frame. Opens a stopped scan again once another program
-    /// has finished its cache. Returns true if source() has changed.
+    /// Applies finished background jobs; call once per frame. Opens a scan that is not converted again once
+    /// another program has finished its cache, or has stopped converting it. Returns true if source() has
+    /// changed.
     bool update();
 
     const std::vector<ScanRow>& rows() const { return rows_; }

@@ -24,7 +24,9 @@ void tip(const std::string& text) {
 /// Draws the progress bar with a button to cancel. Shows why work failed or was stopped.
 void progress(ScanSet& scans, const ScanRow& row) {
     const float button = ImGui::GetFontSize() * 4.5f;
-    if (row.busy()) {
+    if (row.state == ScanState::elsewhere) {
+        ImGui::TextWrapped("Another window or program converts it");
+    } else if (row.busy()) {
         const bool waits = row.state == ScanState::sample;
         const std::string text = waits ? "Queued" : fmt::format("{} {:.0f} %", row.stage, 100 * row.share);
         ImGui::ProgressBar(waits ? 0.0f : static_cast<float>(row.share), ImVec2(-button, 0), text.c_str());

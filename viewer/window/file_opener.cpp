@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include "io/core/log.h"
 #include "io/files/json.h"
@@ -25,6 +26,20 @@ void FileOpener::choose_files() {
     for (const std::string& program : NativeDialog::programs())
         if (dialog_.start(NativeDialog::command(program, folder().string()))) return;
     browser_.open(folder());
+}
+
+/// Lets the desktop's dialog answer where missing scans are.
+void FileOpener::choose_folder() {
+    MissingScans& question = model_.missing_scans;
+    const bool starts = std::exchange(question.browses, false) && !folder_dialog_.open();
+    const std::vector<std::string> programs = NativeDialog::programs();
+    const bool started =
+        starts && std::ranges::any_of(programs, [&](const std::string& program) {
+            return folder_dialog_.start(NativeDialog::folder_command(program, question.folder));
+        });
+    if (starts && !started) question.problem = "No file dialog (zenity or kdialog) is installed.";
+    const auto chosen = folder_dialog_.poll();
+    if (chosen && !chosen->empty() && question.shown) question.answer = question.folder = chosen->front();
 }
 
 /// Shows the scene of a file. Errors: those of the file; there is no scan to show it on.
@@ -76,6 +91,7 @@ void FileOpener::save_scene() {
 
 void FileOpener::take_files() {
     save_scene();
+    choose_folder();
     std::vector<std::string> files = window_.take_dropped_files();
     const auto add = [&](std::vector<std::string> more) {
         std::ranges::move(more, std::back_inserter(files));

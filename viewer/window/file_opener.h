@@ -28,6 +28,7 @@ class FileOpener {
 
  private:
     void choose_files();
+    void choose_folder();
     void save_scene();
     Result<void> open_scene(const std::string& file);
     void open_scenes(std::vector<std::string>& files);
@@ -37,7 +38,7 @@ class FileOpener {
     Window& window_;
     ViewModel& model_;
     KeptSettings& settings_;
-    NativeDialog dialog_;
+    NativeDialog dialog_, folder_dialog_;
     FileBrowser browser_;
 };
 

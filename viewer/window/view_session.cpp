@@ -39,7 +39,8 @@ double axis(int less, int more) {
 
 /// Returns whether more points of a visible scan are to come.
 bool grows(const ScanRow& row) {
-    return row.visible && (row.state == ScanState::sample || row.state == ScanState::converting);
+    return row.visible && (row.state == ScanState::sample || row.state == ScanState::converting ||
+                           row.state == ScanState::elsewhere);
 }
 /// Returns whether points of a visible scan are missing.
 bool is_sketch(const ScanRow& row) {

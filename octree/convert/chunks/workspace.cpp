@@ -58,6 +58,11 @@ std::string as_text(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+std::string whole_path(const fs::path& output) {
+    std::error_code error;
+    return fs::absolute(output, error).lexically_normal().string();
+}
+
 /// What the names of all work folders of an output begin with.
 std::string name_of(const std::string& output) {
     return fmt::format("{:016x}", format::checksum(std::as_bytes(std::span(output))));
@@ -113,8 +118,7 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     Workspace work;
     work.temp_folder_ = temp_folder;
     if (resume == Resume::never) return work;
-    std::error_code error;
-    work.output_ = fs::absolute(output, error).lexically_normal().string();
+    work.output_ = whole_path(output);
     work.identity_ = identity;
     work.part_ = part;
     std::string name = name_of(work.output_);
@@ -130,6 +134,12 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     work.resume_ = resume;
     LUCARNE_TRY(work.start(text_of(work.output_, part, identity), resume));
     return work;
+}
+
+bool Workspace::in_use(const fs::path& temp_folder, const fs::path& output) {
+    const fs::path folder = temp_folder / (name_of(whole_path(output)) + kSuffix);
+    const auto journal = UpdateFile::open_private(folder / kJournal, false, kBusy);
+    return !journal && journal.error().why == kBusy;
 }
 
 std::string Workspace::text_of(const std::string& output, Part part, const std::string& identity) {

@@ -36,6 +36,8 @@ class Workspace {
     static Result<Workspace> open(const std::filesystem::path& temp_folder,
                                   const std::filesystem::path& output, const std::string& identity,
                                   Resume resume, Part part);
+    /// Returns whether a process has the folder of a build by one process open.
+    static bool in_use(const std::filesystem::path& temp_folder, const std::filesystem::path& output);
     /// Tells the folder from all others, also where locks do not reach from one machine to another; empty
     /// without a folder.
     std::string mark() const;

@@ -70,6 +70,28 @@ TEST_F(PipelineTest, AComparedEngineGetsWhatItNeedsToo) {
     EXPECT_GT(both.light_view_points, 0u);
 }
 
+TEST_F(PipelineTest, ExposesALitHalfBesideColoursAsItIsExposedAlone) {
+    const auto picture = [&] { return pipeline_->picture().download_all<uint32_t>(96 * 64); };
+    gi::Scene scene = pipeline_->scene();
+    scene.exposure_ev.reset();
+    ASSERT_TRUE(pipeline_->set_scene(scene));
+    frame("vpl");
+    const double exposure = pipeline_->exposure_ev();
+    const auto lit = picture();
+    EXPECT_GT(std::abs(exposure), 0.5) << "or the test shows nothing";
+    frame("unlit");
+    const auto colours = picture();
+    scene.comparison.emplace().engine = "vpl";
+    ASSERT_TRUE(pipeline_->set_scene(scene));
+    frame("unlit");
+    EXPECT_DOUBLE_EQ(pipeline_->exposure_ev(), exposure);
+    const auto both = picture();
+    for (const size_t row : {size_t{10}, size_t{50}}) {
+        EXPECT_EQ(both[row * 96 + 20], colours[row * 96 + 20]);
+        EXPECT_EQ(both[row * 96 + 70], lit[row * 96 + 70]);
+    }
+}
+
 TEST_F(PipelineTest, SaysWhichEnginesDrewThePictureAndLeavesASlowComparedOneOutOfMotion) {
     gi::Scene scene = pipeline_->scene();
     scene.comparison.emplace().engine = "reference";

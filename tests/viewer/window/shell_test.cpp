@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "octree/convert/chunks/workspace.h"
 #include "tests/viewer/program.h"
 #include "viewer/bookmarks/bookmarks.h"
 #include "viewer/camera/floor_finder.h"
@@ -190,6 +191,13 @@ TEST(NativeDialog, GivesTheLinesThatItsProgramPrints) {
     EXPECT_FALSE(dialog.start({"/there/is/no/such/program"}));
 }
 
+TEST(NativeDialog, AsksForAFolderWhereScansAre) {
+    EXPECT_THAT(NativeDialog::folder_command("zenity", "/a b"),
+                testing::AllOf(testing::Contains("--directory"), testing::Contains("--filename=/a b/")));
+    EXPECT_THAT(NativeDialog::folder_command("kdialog", "/a b"),
+                testing::AllOf(testing::Contains("--getexistingdirectory"), testing::Contains("/a b")));
+}
+
 TEST(NativeDialog, EndsItsProgramWithItself) {
     NativeDialog dialog;
     ASSERT_TRUE(dialog.start({"sleep", "1000"}));
@@ -354,6 +362,24 @@ TEST_F(OpenScans, AScanThatAnotherWindowConvertsIsShownFromThatCacheOnceItIsFini
     ASSERT_TRUE(eventually([&] { return set_.rows()[0].state == ScanState::whole; }));
     ASSERT_TRUE(settles());
     EXPECT_EQ(set_.source()->header().points, other.source()->header().points);
+}
+
+TEST_F(OpenScans, AScanThatAnotherProgramConvertsIsConvertedHereIfThatOneEndsWithoutACache) {
+    const std::string scan = folder_ / "a.las";
+    ASSERT_EQ(test::lucarne("generate cornell --points 20k -o " + scan).code, 0);
+    auto other = octree::Workspace::open(folder_.path(), scan + ".luc", "a build", octree::Resume::later, {});
+    ASSERT_TRUE(other);
+    set_.open({scan});
+    ASSERT_TRUE(eventually([&] { return set_.source() != nullptr; }));
+    set_.convert_next();
+    ASSERT_TRUE(eventually([&] { return set_.rows()[0].state == ScanState::elsewhere; }));
+    EXPECT_FALSE(set_.rows()[0].error) << "it is no failure";
+    EXPECT_FALSE(set_.settled()) << "a better picture is to come";
+    other = tl::make_unexpected(Error{});  // ends
+    ASSERT_TRUE(eventually([&] {
+        set_.convert_next();
+        return set_.rows()[0].state == ScanState::whole;
+    }));
 }
 
 TEST_F(OpenScans, AConversionThatIsStoppedLeavesThePictureAndGoesOnLater) {

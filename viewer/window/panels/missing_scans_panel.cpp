@@ -29,6 +29,8 @@ void draw_missing_scans(MissingScans& question) {
     if ((ImGui::Button("Look there (Enter)") || entered) && !question.folder.empty())
         question.answer = question.folder;
     ImGui::SameLine();
+    if (ImGui::Button("Browse...")) question.browses = true;
+    ImGui::SameLine();
     const bool escape = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
     if (ImGui::Button(question.others_open ? "Go on without (Escape)" : "Cancel (Escape)") || escape)
         question.shown = false;
