@@ -15,8 +15,8 @@ namespace {
 
 bool drag_point(const char* label, glm::dvec3& point, double scene_size) {
     double values[3] = {point.x, point.y, point.z};
-    if (!ImGui::DragScalarN(label, ImGuiDataType_Double, values, 3, static_cast<float>(scene_size / 1000),
-                            nullptr, nullptr, "%.2f"))
+    if (!ImGui::DragScalarN(LeftLabel(label), ImGuiDataType_Double, values, 3,
+                            static_cast<float>(scene_size / 1000), nullptr, nullptr, "%.2f"))
         return false;
     point = {values[0], values[1], values[2]};
     return true;
@@ -24,7 +24,7 @@ bool drag_point(const char* label, glm::dvec3& point, double scene_size) {
 
 bool edit_angle(const char* label, double& radians, float least, float most) {
     float degrees = static_cast<float>(radians * 180 / std::numbers::pi);
-    if (!ImGui::SliderFloat(label, &degrees, least, most, "%.1f°", ImGuiSliderFlags_AlwaysClamp))
+    if (!ImGui::SliderFloat(LeftLabel(label), &degrees, least, most, "%.1f°", ImGuiSliderFlags_AlwaysClamp))
         return false;
     radians = degrees * std::numbers::pi / 180;
     return true;
@@ -32,8 +32,9 @@ bool edit_angle(const char* label, double& radians, float least, float most) {
 
 bool edit_length(const char* label, double& length, double scene_size) {
     const double least = 1e-6;
-    return ImGui::DragScalar(label, ImGuiDataType_Double, &length, static_cast<float>(scene_size / 1000),
-                             &least, nullptr, "%.3f", ImGuiSliderFlags_AlwaysClamp);
+    return ImGui::DragScalar(LeftLabel(label), ImGuiDataType_Double, &length,
+                             static_cast<float>(scene_size / 1000), &least, nullptr, "%.3f",
+                             ImGuiSliderFlags_AlwaysClamp);
 }
 
 /// Sets the colour and keeps the luminance.
@@ -49,14 +50,14 @@ bool edit_colour(gi::SceneLight& light) {
     for (int i = 0; i < 3; ++i)
         shown[i] = gi::linear_to_srgb(most > 0 ? static_cast<float>(light.strength[i] / most) : 1.0f);
     bool changed = false;
-    if (ImGui::ColorEdit3("Colour", shown, ImGuiColorEditFlags_Float)) {
+    if (ImGui::ColorEdit3(LeftLabel("Colour"), shown, ImGuiColorEditFlags_Float)) {
         const glm::dvec3 linear(gi::srgb_to_linear(shown[0]), gi::srgb_to_linear(shown[1]),
                                 gi::srgb_to_linear(shown[2]));
         dye(light, linear);
         changed = true;
     }
     float kelvin = static_cast<float>(gi::black_body_temperature(light.strength));
-    if (ImGui::SliderFloat("Temperature", &kelvin, gi::kCoolest, 12000, "%.0f K",
+    if (ImGui::SliderFloat(LeftLabel("Temperature"), &kelvin, gi::kCoolest, 12000, "%.0f K",
                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
         dye(light, gi::black_body_colour(kelvin));
         changed = true;
@@ -74,12 +75,14 @@ bool edit_strength(const Lighting& model, gi::SceneLight& light) {
     double value = lumens ? gi::luminous_flux(light, metres) : most;
     const double least = 1e-6, largest = 1e12;
     const char* unit = !lumens ? kUnits[static_cast<size_t>(light.kind)] : sun ? "lx" : "lm";
-    bool changed =
-        ImGui::DragScalar(unit, ImGuiDataType_Double, &value, static_cast<float>(std::max(value, 0.01) / 100),
-                          &least, &largest, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    const LeftLabel label("Strength");
+    ImGui::SetNextItemWidth(-4.5f * ImGui::GetFontSize());  // leaves room for the unit
+    bool changed = ImGui::DragScalar(label, ImGuiDataType_Double, &value,
+                                     static_cast<float>(std::max(value, 0.01) / 100), &least, &largest,
+                                     (std::string("%.4g ") + unit).c_str(), ImGuiSliderFlags_AlwaysClamp);
     if (changed && lumens) gi::set_luminous_flux(light, value, metres);
     if (changed && !lumens) light.strength = most > 0 ? light.strength * (value / most) : glm::dvec3(value);
-    ImGui::SameLine(ImGui::GetContentRegionAvail().x - ImGui::GetFontSize() * 4);
+    ImGui::SameLine();
     ImGui::Checkbox(sun ? "lx##unit" : "lm##unit", &lumens);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
@@ -97,7 +100,8 @@ bool edit_shape(gi::SceneLight& light, double scene_size) {
         case LightKind::spot: {
             changed |= edit_angle("Cone angle", light.angle, 1, 170);
             float softness = static_cast<float>(light.softness);
-            if (ImGui::SliderFloat("Edge softness", &softness, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+            if (ImGui::SliderFloat(LeftLabel("Edge softness"), &softness, 0, 1, "%.2f",
+                                   ImGuiSliderFlags_AlwaysClamp)) {
                 light.softness = softness;
                 changed = true;
             }
@@ -127,7 +131,7 @@ bool edit_light(const Lighting& model, gi::SceneLight& light) {
     else if (ImGui::Button("Move to the camera"))
         place_light_at_camera(model);
     if (!fold("More")) return changed;
-    if (ImGui::InputText("Name", &light.name)) model.view.shown_changed();
+    if (ImGui::InputText(LeftLabel("Name"), &light.name)) model.view.shown_changed();
     if (!sun) {
         changed |= drag_point("Position", light.position, model.view.scene_size);
         if (light.kind != gi::LightKind::point)

@@ -20,23 +20,24 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 bool edit_degrees(const char* label, double& value, double least, double most, const char* format = "%.1f°") {
-    return ImGui::DragScalar(label, ImGuiDataType_Double, &value, 0.1f, &least, &most, format,
+    return ImGui::DragScalar(LeftLabel(label), ImGuiDataType_Double, &value, 0.1f, &least, &most, format,
                              ImGuiSliderFlags_AlwaysClamp);
 }
 
 bool edit_moment(gi::Moment& moment) {
     gi::LocalTime time = gi::local_time(moment);
     int date[3] = {time.year, time.month, time.day};
-    bool changed = ImGui::DragInt3("Date", date, 0.1f);
+    bool changed = ImGui::DragInt3(LeftLabel("Date"), date, 0.1f);
     float hours = static_cast<float>(time.seconds) / 3600;
     char clock[32];
     std::snprintf(clock, sizeof clock, "%02d:%02d", time.seconds / 3600, time.seconds / 60 % 60);
-    if (ImGui::SliderFloat("Time", &hours, 0, 23.99f, clock, ImGuiSliderFlags_AlwaysClamp)) {
+    if (ImGui::SliderFloat(LeftLabel("Time"), &hours, 0, 23.99f, clock, ImGuiSliderFlags_AlwaysClamp)) {
         time.seconds = static_cast<int>(std::lround(hours * 60)) * 60;
         changed = true;
     }
     float ahead = static_cast<float>(moment.ahead) / 60;
-    if (ImGui::SliderFloat("Clock", &ahead, -12, 14, "UTC %+.1f h", ImGuiSliderFlags_AlwaysClamp)) {
+    if (ImGui::SliderFloat(LeftLabel("Clock"), &ahead, -12, 14, "UTC %+.1f h",
+                           ImGuiSliderFlags_AlwaysClamp)) {
         moment.ahead = static_cast<int>(std::lround(ahead * 4)) * 15;
         changed = true;
     }
@@ -47,7 +48,7 @@ bool edit_moment(gi::Moment& moment) {
 }
 
 bool edit_share(const char* label, double& value, double least, double most) {
-    return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &least, &most, "%.2f",
+    return ImGui::SliderScalar(LeftLabel(label), ImGuiDataType_Double, &value, &least, &most, "%.2f",
                                ImGuiSliderFlags_AlwaysClamp);
 }
 
@@ -61,9 +62,9 @@ bool edit_radiance(const char* label, glm::dvec3& radiance) {
     float most = 0;
     glm::vec3 colour = scaled_to_one(radiance, most);
     ImGui::PushID(label);
-    bool changed = ImGui::ColorEdit3("Linear colour", &colour.x, ImGuiColorEditFlags_Float);
-    changed |= ImGui::DragFloat("W/(sr m2)", &most, std::max(most, 0.01f) / 100, 0, 1e9f, "%.4g",
-                                ImGuiSliderFlags_AlwaysClamp);
+    bool changed = ImGui::ColorEdit3(LeftLabel("Linear colour"), &colour.x, ImGuiColorEditFlags_Float);
+    changed |= ImGui::DragFloat(LeftLabel("Strength"), &most, std::max(most, 0.01f) / 100, 0, 1e9f,
+                                "%.4g W/(sr m2)", ImGuiSliderFlags_AlwaysClamp);
     ImGui::PopID();
     if (changed) radiance = glm::dvec3(colour) * static_cast<double>(most);
     return changed;
@@ -100,6 +101,7 @@ void edit_clear_sky(const Lighting& model) {
 
 /// Lets the user choose a sky picture, which a thread reads.
 void choose_sky(LightModel& tools) {
+    ImGui::SetNextItemWidth(-4 * ImGui::GetFontSize());
     const bool entered = ImGui::InputTextWithHint("##image", "sky.exr or sky.hdr", &tools.sky_image,
                                                   ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
@@ -119,7 +121,7 @@ void choose_class(gi::SceneMaterial& material, const Lighting& model) {
     const auto name_of = [](int number) {
         return std::to_string(number) + " " + std::string(gi::class_name(static_cast<uint8_t>(number)));
     };
-    if (!ImGui::BeginCombo("Class", name_of(*material.classification).c_str())) return;
+    if (!ImGui::BeginCombo(LeftLabel("Class"), name_of(*material.classification).c_str())) return;
     for (int number = 0; number < 256; ++number)
         if (ImGui::Selectable(name_of(number).c_str(), number == *material.classification)) {
             material.classification = number;
@@ -196,7 +198,7 @@ void draw_sky(const Lighting& model) {
         else
             ImGui::TextWrapped("%s", model.view.scene.environment->image.c_str());
         float degrees = static_cast<float>(model.view.scene.environment->rotation / kDegree);
-        if (ImGui::SliderFloat("Rotation", &degrees, -180, 180, "%.1f°"))
+        if (ImGui::SliderFloat(LeftLabel("Rotation"), &degrees, -180, 180, "%.1f°"))
             change_sky(model,
                        [&](gi::Environment& sky) { sky.rotation = static_cast<float>(degrees * kDegree); });
     }

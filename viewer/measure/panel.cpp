@@ -43,7 +43,7 @@ void thickness_field(MeasureModel& measure, const UnitChoice& units) {
     const double unit = units.convert(1, Dimension::length);
     double shown = (of_selected ? one->thickness : measure.thickness) * unit;
     const std::string label = "thickness, " + units.name(Dimension::length);
-    ImGui::InputDouble(label.c_str(), &shown, 0, 0, "%.4g");
+    ImGui::InputDouble(LeftLabel(label), &shown, 0, 0, "%.4g");
     if (!ImGui::IsItemDeactivatedAfterEdit() || !(shown >= 0) || !(shown < 1e12)) return;
     measure.thickness = shown / unit;
     if (of_selected) measure.list.set_thickness(*measure.selected, measure.thickness);
@@ -80,7 +80,7 @@ void details(MeasureModel& measure, const UnitChoice& units) {
     const Measurement* one = measure.selected_one();
     if (!one) return;
     std::string name = one->name;
-    if (ImGui::InputText("Name", &name, ImGuiInputTextFlags_EnterReturnsTrue) ||
+    if (ImGui::InputText(LeftLabel("Name"), &name, ImGuiInputTextFlags_EnterReturnsTrue) ||
         ImGui::IsItemDeactivatedAfterEdit())
         measure.list.rename(*measure.selected, name);
     one = measure.selected_one();
@@ -113,7 +113,7 @@ void edit_buttons(MeasureModel& measure, const UnitChoice& units) {
     ImGui::SameLine();
     if (ImGui::RadioButton(("file's unit: " + unit_name(units.metres_per_unit)).c_str(), !measure.metres))
         measure.metres = false;
-    ImGui::InputText("File", &measure.file);
+    ImGui::InputText(LeftLabel("File"), &measure.file);
     if (button("Save", !measure.list.all().empty())) measure.commands.push(SaveMeasurements{});
     ImGui::SameLine();
     if (button("Load", true)) measure.commands.push(LoadMeasurements{});

@@ -9,6 +9,7 @@
 
 #include "viewer/publish/publishing.h"
 #include "viewer/publish/render_progress.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -62,7 +63,7 @@ void key_buttons(const Publishing& model) {
 /// number counts, unless the user restored the old one.
 template <class Take>
 void number_field(PublishModel& publish, const char* label, double value, const Take& take) {
-    if (ImGui::InputDouble(label, &value, 0, 0, "%.6g"))
+    if (ImGui::InputDouble(LeftLabel(label), &value, 0, 0, "%.6g"))
         publish.typed = value;
     else if (ImGui::IsItemActive() || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
         publish.typed.reset();
@@ -100,7 +101,7 @@ void preview(PublishModel& publish) {
 
 void files(PublishModel& publish) {
     const bool any = !publish.editor.empty();
-    ImGui::InputText("Path's file", &publish.path_file);
+    ImGui::InputText(LeftLabel("Path's file"), &publish.path_file);
     if (button("Save", any)) publish.commands.push(SavePath{});
     ImGui::SameLine();
     if (button("Load", true)) publish.commands.push(LoadPath{});
@@ -108,8 +109,8 @@ void files(PublishModel& publish) {
     number_field(publish, "Frames a second", publish.editor.path().frames_per_second,
                  [&](double rate) { publish.take(publish.editor.set_frames_per_second(rate)); });
     size_fields("Size of frames", publish.flight_width, publish.flight_height);
-    ImGui::InputText("PNG folder", &publish.frames_folder);
-    ImGui::InputText("Video's file", &publish.video_file);
+    ImGui::InputText(LeftLabel("PNG folder"), &publish.frames_folder);
+    ImGui::InputText(LeftLabel("Video's file"), &publish.video_file);
     if (!render_progress(publish)) return;
     if (button("Render frames", any)) publish.commands.push(RenderFrames{});
     ImGui::SameLine();

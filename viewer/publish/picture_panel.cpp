@@ -6,6 +6,7 @@
 
 #include "viewer/publish/publishing.h"
 #include "viewer/publish/render_progress.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 
@@ -17,11 +18,11 @@ void draw_picture_panel(const Publishing& model) {
         publish.width = static_cast<int>(display.x);
         publish.height = static_cast<int>(display.y);
     }
-    ImGui::InputInt("Frames", &publish.frames);
+    ImGui::InputInt(LeftLabel("Frames"), &publish.frames);
     publish.frames = std::clamp(publish.frames, 1, kMostAveraged);
     ImGui::Checkbox("Transparent background", &publish.finish.transparent);
     ImGui::Checkbox("Legend, axes and scale bar", &publish.finish.overlays);
-    ImGui::InputText("File", &publish.picture_file);
+    ImGui::InputText(LeftLabel("File"), &publish.picture_file);
     if (render_progress(publish) && ImGui::Button("Save")) publish.commands.push(RenderPicture{});
 }
 

@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/publish/model.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 
@@ -15,7 +16,7 @@ inline constexpr int kMostAveraged = 65536;    ///< frames
 /// Draws fields for a picture's width and height.
 inline void size_fields(const char* label, int& width, int& height) {
     int both[2] = {width, height};
-    ImGui::InputInt2(label, both);
+    ImGui::InputInt2(LeftLabel(label), both);
     width = std::clamp(both[0], 1, kLargestPicture);
     height = std::clamp(both[1], 1, kLargestPicture);
 }

@@ -30,7 +30,7 @@ bool engine_entry(const gi::EngineInfo& engine, bool chosen) {
 }
 
 void engine_choice(const Rendering& model) {
-    if (!ImGui::BeginCombo("Engine", gi::label_of(model.view.method.engine).c_str())) return;
+    if (!ImGui::BeginCombo(LeftLabel("Engine"), gi::label_of(model.view.method.engine).c_str())) return;
     for (const auto& entry : gi::engines())
         if (engine_entry(entry.info, entry.info.name == model.view.method.engine))
             model.view.method.engine = entry.info.name;
@@ -38,7 +38,7 @@ void engine_choice(const Rendering& model) {
 }
 
 void preset_choice(const Rendering& model) {
-    if (!ImGui::BeginCombo("Preset", model.view.preset.c_str())) return;
+    if (!ImGui::BeginCombo(LeftLabel("Preset"), model.view.preset.c_str())) return;
     for (const Preset& preset : presets()) {
         const std::string name(preset.name), description(preset.description);
         if (ImGui::Selectable(name.c_str(), name == model.view.preset))
@@ -59,9 +59,9 @@ void luminance_range(const Rendering& model) {
         model.view.shown_changed();
     }
     float ends[2] = {static_cast<float>(shown.low), static_cast<float>(shown.high)};
-    if (!automatic &&
-        ImGui::DragFloatRange2("cd/m2", &ends[0], &ends[1], ends[1] / 200, 1e-6f, 1e12f, "%.4g", "%.4g",
-                               ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
+    if (!automatic && ImGui::DragFloatRange2(LeftLabel("Range"), &ends[0], &ends[1], ends[1] / 200, 1e-6f,
+                                             1e12f, "%.4g cd/m2", "%.4g cd/m2",
+                                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
         model.view.scene.luminance = gi::ValueRange{ends[0], std::max(ends[1], ends[0] * 1.01f)};
         model.view.shown_changed();
     }
@@ -71,7 +71,7 @@ void luminance_range(const Rendering& model) {
 bool temperature(const char* label, glm::dvec3& white) {
     const glm::dvec3 daylight = gi::black_body_colour(gi::kDaylight);
     float kelvin = static_cast<float>(gi::black_body_temperature(white * daylight));
-    if (!ImGui::SliderFloat(label, &kelvin, 2000, 12000, "%.0f K", ImGuiSliderFlags_AlwaysClamp))
+    if (!ImGui::SliderFloat(LeftLabel(label), &kelvin, 2000, 12000, "%.0f K", ImGuiSliderFlags_AlwaysClamp))
         return false;
     white = gi::black_body_colour(kelvin) / daylight;
     return true;
@@ -92,14 +92,14 @@ void exposure(const Rendering& model) {
         model.view.shown_changed();
     }
     float stops = static_cast<float>(model.view.scene.exposure_ev.value_or(measured));
-    if (ImGui::SliderFloat("Exposure", &stops, -12.0f, 12.0f, "%+.1f stops")) {
+    if (ImGui::SliderFloat(LeftLabel("Exposure"), &stops, -12.0f, 12.0f, "%+.1f stops")) {
         model.view.scene.exposure_ev = stops;
         model.view.shown_changed();
     }
     white_balance(model.view);
     const char* const curves[] = {"Filmic", "Reinhard", "None", "False colours"};
     int curve = static_cast<int>(model.view.scene.tone_map);
-    if (ImGui::Combo("Tone map", &curve, curves, 4)) {
+    if (ImGui::Combo(LeftLabel("Tone map"), &curve, curves, 4)) {
         model.view.scene.tone_map = static_cast<gi::ToneMap>(curve);
         model.view.shown_changed();
     }
@@ -116,7 +116,7 @@ bool choose_power(const char* label, const gi::SliderRange& slider, int64_t& val
               most = static_cast<int>(std::log2(slider.most));
     int power = least;
     while (power < most && (int64_t{1} << power) < value) ++power;
-    if (!ImGui::SliderInt(label, &power, least, most, std::to_string(int64_t{1} << power).c_str(),
+    if (!ImGui::SliderInt(LeftLabel(label), &power, least, most, std::to_string(int64_t{1} << power).c_str(),
                           ImGuiSliderFlags_AlwaysClamp))
         return false;
     value = int64_t{1} << power;
@@ -128,7 +128,7 @@ bool edit_integer(const gi::OptionInfo& option, const char* label, gi::OptionVal
     if (option.slider.logarithmic) return choose_power(label, option.slider, whole);
     int now = static_cast<int>(whole);
     const bool unset = !option.unset.empty() && now < option.least;
-    if (!ImGui::SliderInt(label, &now, static_cast<int>(option.slider.least),
+    if (!ImGui::SliderInt(LeftLabel(label), &now, static_cast<int>(option.slider.least),
                           static_cast<int>(option.slider.most),
                           unset ? std::string(option.unset).c_str() : "%d", ImGuiSliderFlags_AlwaysClamp))
         return false;
@@ -141,7 +141,8 @@ bool edit_number(const gi::OptionInfo& option, const char* label, gi::OptionValu
     const auto least = static_cast<float>(option.slider.least), most = static_cast<float>(option.slider.most);
     const ImGuiSliderFlags scale =
         option.slider.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
-    if (!ImGui::SliderFloat(label, &now, least, most, "%.3g", ImGuiSliderFlags_AlwaysClamp | scale))
+    if (!ImGui::SliderFloat(LeftLabel(label), &now, least, most, "%.3g",
+                            ImGuiSliderFlags_AlwaysClamp | scale))
         return false;
     value = static_cast<double>(now);
     return true;
@@ -150,7 +151,7 @@ bool edit_number(const gi::OptionInfo& option, const char* label, gi::OptionValu
 bool edit_choice(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
     auto& chosen = std::get<int64_t>(value);
     const std::string shown = gi::option_text(option, value);
-    if (!ImGui::BeginCombo(label, shown.c_str())) return false;
+    if (!ImGui::BeginCombo(LeftLabel(label), shown.c_str())) return false;
     bool changed = false;
     for (size_t i = 0; i < option.choices.size(); ++i) {
         if (!ImGui::Selectable(std::string(option.choices[i]).c_str(), chosen == static_cast<int64_t>(i)))
@@ -166,7 +167,7 @@ bool edit_colour(const char* label, gi::OptionValue& value) {
     auto& colour = std::get<glm::dvec3>(value);
     float shown[3] = {static_cast<float>(colour.x), static_cast<float>(colour.y),
                       static_cast<float>(colour.z)};
-    if (!ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_Float)) return false;
+    if (!ImGui::ColorEdit3(LeftLabel(label), shown, ImGuiColorEditFlags_Float)) return false;
     colour = glm::clamp(glm::dvec3(shown[0], shown[1], shown[2]), 0.0, 1.0);
     return true;
 }
@@ -200,7 +201,7 @@ void effort(const Rendering& model) {
             if (!option->cost.empty()) tell_cost(std::string(option->cost).c_str());
         }
     float scale = static_cast<float>(100 * model.view.resolution_scale);
-    if (ImGui::SliderFloat("Resolution", &scale, 100 * gi::kLeastPictureScale, 100, "%.0f %%",
+    if (ImGui::SliderFloat(LeftLabel("Resolution"), &scale, 100 * gi::kLeastPictureScale, 100, "%.0f %%",
                            ImGuiSliderFlags_AlwaysClamp))
         model.view.resolution_scale =
             std::clamp(static_cast<double>(scale) / 100, gi::kLeastPictureScale, 1.0);
@@ -215,12 +216,12 @@ void albedo(const Rendering& model) {
     if (!fold("Albedo")) return;
     gi::Albedo& albedo = model.view.scene.albedo;
     float scale = static_cast<float>(albedo.scale), flatten = static_cast<float>(albedo.flatten);
-    if (ImGui::SliderFloat("Scale", &scale, 0, 3, "%.2f")) {
+    if (ImGui::SliderFloat(LeftLabel("Scale"), &scale, 0, 3, "%.2f")) {
         albedo.scale = std::clamp(static_cast<double>(scale), 0.0, 10.0);
         model.view.scene_changed();
     }
     tell_cost("of what the points' colours reflect, which stays within 0 to .95; costs nothing");
-    ImGui::SliderFloat("Flatten", &flatten, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderFloat(LeftLabel("Flatten"), &flatten, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
     if (flatten != static_cast<float>(albedo.flatten)) {
         albedo.flatten = flatten;
         model.view.scene_changed();
@@ -241,7 +242,8 @@ void albedo(const Rendering& model) {
 void comparison(const Rendering& model) {
     if (!fold("Compare")) return;
     auto& comparison = model.view.scene.comparison;
-    if (ImGui::BeginCombo("With", comparison ? gi::label_of(comparison->engine).c_str() : "Nothing")) {
+    if (ImGui::BeginCombo(LeftLabel("With"),
+                          comparison ? gi::label_of(comparison->engine).c_str() : "Nothing")) {
         if (ImGui::Selectable("Nothing", !comparison)) compare_with(model.view, "");
         for (const auto& entry : gi::engines())
             if (engine_entry(entry.info, comparison && comparison->engine == entry.info.name))
@@ -252,12 +254,13 @@ void comparison(const Rendering& model) {
     if (!comparison) return;
     const char* const shows[] = {"Side by side", "Signed difference", "Absolute difference"};
     int show = static_cast<int>(comparison->show);
-    if (ImGui::Combo("As", &show, shows, 3)) {
+    if (ImGui::Combo(LeftLabel("As"), &show, shows, 3)) {
         comparison->show = static_cast<gi::Comparison::Show>(show);
         model.view.shown_changed();
     }
     float range = static_cast<float>(comparison->range);
-    if (show != 0 && ImGui::SliderFloat("Range", &range, 0.01f, 10, "%.3g", ImGuiSliderFlags_Logarithmic)) {
+    if (show != 0 &&
+        ImGui::SliderFloat(LeftLabel("Range"), &range, 0.01f, 10, "%.3g", ImGuiSliderFlags_Logarithmic)) {
         comparison->range = std::max(range, 1e-6f);
         model.view.shown_changed();
     }

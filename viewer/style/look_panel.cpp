@@ -17,7 +17,7 @@ template <class Value>
 bool choice(const char* label, Value& value, std::span<const std::string_view> names) {
     bool changed = false;
     const std::string now(names[static_cast<size_t>(value)]);
-    if (!ImGui::BeginCombo(label, now.c_str())) return false;
+    if (!ImGui::BeginCombo(LeftLabel(label), now.c_str())) return false;
     for (size_t i = 0; i < names.size(); ++i) {
         const std::string name(names[i]);
         if (!ImGui::Selectable(name.c_str(), name == now)) continue;
@@ -30,7 +30,8 @@ bool choice(const char* label, Value& value, std::span<const std::string_view> n
 
 bool slider(const char* label, double& value, float least, float most, const char* format, int flags = 0) {
     float shown = static_cast<float>(value);
-    if (!ImGui::SliderFloat(label, &shown, least, most, format, flags | ImGuiSliderFlags_AlwaysClamp))
+    if (!ImGui::SliderFloat(LeftLabel(label), &shown, least, most, format,
+                            flags | ImGuiSliderFlags_AlwaysClamp))
         return false;
     value = shown;
     return true;
@@ -38,7 +39,7 @@ bool slider(const char* label, double& value, float least, float most, const cha
 
 bool attribute_choice(const Styling& model, gi::Look& look) {
     if (!model.view.picture || !model.view.picture->source ||
-        !ImGui::BeginCombo("Attribute", look.attribute.c_str()))
+        !ImGui::BeginCombo(LeftLabel("Attribute"), look.attribute.c_str()))
         return false;
     bool changed = false;
     for (const std::string& name : attribute_names(*model.view.picture->source)) {
@@ -63,9 +64,10 @@ bool edit_range(const Styling& model, gi::Look& look) {
     // Dragging an end by 200 pixels moves it by the size of the range.
     gi::ValueRange range = look.range.value_or(*measured);
     const auto speed = static_cast<float>(std::max(std::abs(range.high - range.low) / 200, 1e-9));
-    bool dragged =
-        ImGui::DragScalar("Low", ImGuiDataType_Double, &range.low, speed, nullptr, nullptr, "%.6g");
-    dragged |= ImGui::DragScalar("High", ImGuiDataType_Double, &range.high, speed, nullptr, nullptr, "%.6g");
+    bool dragged = ImGui::DragScalar(LeftLabel("Low"), ImGuiDataType_Double, &range.low, speed, nullptr,
+                                     nullptr, "%.6g");
+    dragged |= ImGui::DragScalar(LeftLabel("High"), ImGuiDataType_Double, &range.high, speed, nullptr,
+                                 nullptr, "%.6g");
     if (dragged) look.range = range;
     return changed || dragged;
 }
@@ -84,7 +86,8 @@ bool edit_colours(const Styling& model, gi::Look& look) {
 bool edit_outliers(gi::Look& look) {
     constexpr const char* kNames[] = {"All drawn", "Without those found", "Strict", "Very strict"};
     int strictness = static_cast<int>(std::min<uint32_t>(look.outliers, 3));
-    if (!ImGui::SliderInt("Outliers", &strictness, 0, 3, kNames[strictness], ImGuiSliderFlags_AlwaysClamp))
+    if (!ImGui::SliderInt(LeftLabel("Outliers"), &strictness, 0, 3, kNames[strictness],
+                          ImGuiSliderFlags_AlwaysClamp))
         return false;
     look.outliers = static_cast<uint32_t>(strictness);
     return true;
@@ -142,7 +145,7 @@ bool edit_backdrop(gi::Look& look) {
     const auto colour = [&](const char* label, glm::dvec3& value) {
         float shown[3] = {static_cast<float>(value.x), static_cast<float>(value.y),
                           static_cast<float>(value.z)};
-        if (!ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_Float)) return;
+        if (!ImGui::ColorEdit3(LeftLabel(label), shown, ImGuiColorEditFlags_Float)) return;
         value = glm::clamp(glm::dvec3(shown[0], shown[1], shown[2]), 0.0, 1.0);
         changed = true;
     };
@@ -174,8 +177,8 @@ bool edit_classes(const Styling& model, gi::Look& look) {
 
 bool drag_place(const char* label, glm::dvec3& place, double speed) {
     double values[3] = {place.x, place.y, place.z};
-    if (!ImGui::DragScalarN(label, ImGuiDataType_Double, values, 3, static_cast<float>(speed), nullptr,
-                            nullptr, "%.3f"))
+    if (!ImGui::DragScalarN(LeftLabel(label), ImGuiDataType_Double, values, 3, static_cast<float>(speed),
+                            nullptr, nullptr, "%.3f"))
         return false;
     place = {values[0], values[1], values[2]};
     return true;

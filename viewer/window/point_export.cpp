@@ -12,6 +12,7 @@
 #include "io/formats/scan.h"
 #include "viewer/scans/scan_set.h"
 #include "viewer/ui/on_screen.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 
@@ -61,11 +62,14 @@ void PointExport::draw() {
     ExportChoice& choice = model_.exporting;
     draw_file_question("Export points", choice.name, [&] {
         ImGui::TextDisabled("As .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz");
-        ImGui::SetNextItemWidth(8 * ImGui::GetFontSize());
-        ImGui::InputDouble("Spacing, m (0: all points)", &choice.spacing, 0, 0, "%.4g");
+        const auto field = [](const char* text) {
+            LeftLabel label(text, 13);
+            ImGui::SetNextItemWidth(8 * ImGui::GetFontSize());
+            return label;
+        };
+        ImGui::InputDouble(field("Spacing, m (0: all points)"), &choice.spacing, 0, 0, "%.4g");
         choice.spacing = std::clamp(choice.spacing, 0.0, 1e6);
-        ImGui::SetNextItemWidth(8 * ImGui::GetFontSize());
-        ImGui::InputInt("Every n-th point", &choice.every);
+        ImGui::InputInt(field("Every n-th point"), &choice.every);
         choice.every = std::clamp(choice.every, 1, 1'000'000'000);
     });
     const ExportState state = worker_.state();

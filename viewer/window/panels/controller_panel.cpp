@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include "viewer/ui/widgets.h"
 #include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
@@ -27,12 +28,13 @@ void draw_status(const ControllerModel& controller) {
 void draw_axis(io::SixDofMapping& mapping, size_t axis) {
     ImGui::PushID(static_cast<int>(axis));
     int from = mapping.from[axis];
+    const LeftLabel label(kAxes[axis]);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
     if (ImGui::Combo("##from", &from, kAxes.data(), static_cast<int>(kAxes.size())))
         mapping.from[axis] = static_cast<uint8_t>(from);
     ImGui::SameLine();
     auto scale = static_cast<float>(mapping.scale[axis]);
-    if (ImGui::SliderFloat(kAxes[axis], &scale, -3, 3, "%.2f times", ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::SliderFloat(label, &scale, -3, 3, "%.2f times", ImGuiSliderFlags_AlwaysClamp))
         mapping.scale[axis] = scale;
     ImGui::PopID();
 }
@@ -51,10 +53,10 @@ void draw_controller_panel(ViewModel& model) {
     controller.holds_object = hold == 1;
     auto sensitivity = static_cast<float>(mapping.sensitivity),
          dead = static_cast<float>(100 * mapping.dead_zone);
-    if (ImGui::SliderFloat("Sensitivity", &sensitivity, 0.05f, 10, "%.2f",
+    if (ImGui::SliderFloat(LeftLabel("Sensitivity"), &sensitivity, 0.05f, 10, "%.2f",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         mapping.sensitivity = sensitivity;
-    if (ImGui::SliderFloat("Dead zone", &dead, 0, 50, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::SliderFloat(LeftLabel("Dead zone"), &dead, 0, 50, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
         mapping.dead_zone = dead / 100;
     ImGui::TextUnformatted("What moves the view, by which axis of the device:");
     for (size_t axis = 0; axis < kAxes.size(); ++axis) draw_axis(mapping, axis);

@@ -17,7 +17,7 @@ constexpr uint64_t kMiB = 1 << 20;
 void text_size(Settings& settings) {
     static constexpr std::array kSizes = {0.75, 1.0, 1.25, 1.5, 2.0, 3.0};
     const auto name = [](double size) { return std::to_string(static_cast<int>(100 * size + 0.5)) + " %"; };
-    if (!ImGui::BeginCombo("Text size", name(settings.text_size).c_str())) return;
+    if (!ImGui::BeginCombo(LeftLabel("Text size"), name(settings.text_size).c_str())) return;
     for (const double size : kSizes)
         if (ImGui::Selectable(name(size).c_str(), size == settings.text_size)) settings.text_size = size;
     ImGui::EndCombo();
@@ -29,7 +29,7 @@ void navigation(Navigation& navigation) {
         std::pair{NavigationMode::fly, "Fly"}, std::pair{NavigationMode::walk, "Walk"}};
     const auto now =
         std::ranges::find(kModes, navigation.mode(), [](const auto& mode) { return mode.first; });
-    if (!ImGui::BeginCombo("Navigation", now == kModes.end() ? "" : now->second)) return;
+    if (!ImGui::BeginCombo(LeftLabel("Navigation"), now == kModes.end() ? "" : now->second)) return;
     for (const auto& [mode, label] : kModes)
         if (ImGui::Selectable(label, mode == navigation.mode())) navigation.set_mode(mode);
     ImGui::EndCombo();
@@ -40,7 +40,7 @@ void device_memory(Settings& settings) {
     const auto name = [](double cap) {
         return cap > 0 ? bytes_text(static_cast<uint64_t>(cap) * kMiB) : std::string("Usual");
     };
-    const bool open = ImGui::BeginCombo("Device memory", name(settings.device_memory).c_str());
+    const bool open = ImGui::BeginCombo(LeftLabel("Device memory"), name(settings.device_memory).c_str());
     if (open) {
         if (ImGui::Selectable("Usual", settings.device_memory == 0)) settings.device_memory = 0;
         for (const double cap : kCaps)
@@ -53,7 +53,7 @@ void device_memory(Settings& settings) {
 
 void sensitivity(io::SixDofMapping& mapping) {
     auto value = static_cast<float>(mapping.sensitivity);
-    if (ImGui::SliderFloat("Controller", &value, 0.05f, 10, "%.2f",
+    if (ImGui::SliderFloat(LeftLabel("Controller"), &value, 0.05f, 10, "%.2f",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         mapping.sensitivity = value;
     help_mark("sensitivity of a 6-DoF controller");

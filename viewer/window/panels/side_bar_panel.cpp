@@ -84,7 +84,7 @@ void draw_side_bar(ViewModel& model, bool has_view) {
         // least one pixel.
         if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && std::abs(dragged - width) >= 1)
             bar.width = std::clamp(static_cast<double>(dragged / font), SideBar::kLeast, SideBar::kMost);
-        ImGui::PushItemWidth(-8 * font);  // leaves room for labels
+        ImGui::PushItemWidth(-1.5f * font);  // leaves room for "?"
         for (size_t i = 0; i < kSections; ++i)
             if (is_there(model, static_cast<BarSection>(i), has_view))
                 draw_section(model, static_cast<BarSection>(i));
