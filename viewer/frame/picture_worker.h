@@ -25,6 +25,7 @@ struct PictureRequest {
     uint64_t shader_version = 0;           ///< changes when the shader files are to be read again
     bool moving = false;                   ///< one picture is enough, since the next request will follow
     bool sketch = false;                   ///< a large picture between motion and rest
+    bool small = false;                    ///< a small picture of new light, before the one at full size
     uint32_t pictures = kMostAccumulated;  ///< number to average at rest; then the worker sleeps
 
     /// What makes another picture of it, for comparisons. `scene_version` stands for the scene.

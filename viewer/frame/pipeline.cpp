@@ -191,7 +191,7 @@ Result<void> Pipeline::State::stream(const FrameRequest& request) {
     std::vector<const octree::Cut*> later;
     for (const octree::Cut& cut : ahead) later.push_back(&cut);
     const double seconds = std::max(kLeastLoadingTime, kLoadingShare * last_seconds);
-    LUCARNE_TRY(request.wait || fresh
+    LUCARNE_TRY(request.wait || request.complete || fresh
                     ? surfels.load_all(chosen.all())
                     : surfels.load(chosen.all(), later, seconds, first ? kFirstPatience : 0));
     const auto error = surfels.take_error();

@@ -45,6 +45,7 @@ struct FrameRequest {
     gi::SceneCamera camera;
     ImageSize size{1280, 720};
     bool wait = false;         ///< loads complete cuts first: the same pixels on every run
+    bool complete = false;     ///< likewise, but leaves out nodes that cannot be read
     bool accumulate = false;   ///< averages with earlier frames as long as nothing drawn changes
     bool antialiased = true;   ///< softens edges: by coverage in the first frame, by other rays in the next
                                ///< ones of an average

@@ -125,6 +125,7 @@ void take_mood(const Lighting& model, Mood mood) {
         model.view.method.engine = engine_here(model.view, mood);
     model.lights.selected = 0;
     model.lights.mood = mood;
+    model.view.light_replaced();
 }
 
 void place_light_at_camera(const Lighting& model) {

@@ -35,6 +35,7 @@ struct View {
 
     gi::Scene scene;
     uint64_t scene_version = 1, shown_changes = 0;
+    uint64_t replaced = 0;  ///< scene_version when all light was replaced last
     Method method;
     std::string preset;
     double resolution_scale = 1;  ///< share of the window's width and height at which pictures are made
@@ -60,6 +61,12 @@ struct View {
     void shown_changed() {
         ++scene_version;
         ++shown_changes;
+    }
+    /// Call after all light was replaced at once, which is no motion: the last picture stays until there is
+    /// one with all of the new light.
+    void light_replaced() {
+        scene_changed();
+        replaced = scene_version;
     }
     void go_to(const gi::SceneCamera& camera) {
         glide.stop();

@@ -47,6 +47,14 @@ bool is_sketch(const ScanRow& row) {
     return grows(row) || (row.visible && row.state == ScanState::stopped);
 }
 
+constexpr double kQuickScale = 0.5;  ///< of the first picture that a slow engine makes of another light
+
+/// Returns whether a picture by an engine takes so long that it reports its progress.
+bool is_slow(std::string_view engine) {
+    const auto entry = gi::find_engine(engine);
+    return entry && (*entry)->info.reports_progress;
+}
+
 /// Draws the background of the first picture, before there is one.
 void draw_backdrop(const gi::Backdrop& backdrop) {
     if (backdrop.kind != gi::Backdrop::Kind::gradient) return;
@@ -99,9 +107,11 @@ void ViewSession::take_picture() {
     if (latest->source == scans_.source() && latest->stats.nodes_pending == 0) scans_.seen();
     const bool last_source = scans_.settled() && latest->source == scans_.source();
     const bool own_engine = latest->stats.lit_by == sent_.method.engine;  // none that stands in
-    const bool whole = latest->request == sent_number_ && !latest->moving && own_engine &&
-                       latest->stats.nodes_pending == 0 && last_source;
+    const bool newest = latest->request == sent_number_ && !latest->moving;
+    const bool whole =
+        newest && !sent_.small && own_engine && latest->stats.nodes_pending == 0 && last_source;
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
+    relit_seen_ |= newest;
     if (whole) help_in_the_dark(*latest);
 }
 
@@ -433,8 +443,10 @@ void ViewSession::send_request() {
     if (!scans_.source()) return;  // its camera is not known yet
     // Changes of lights count as motion; changes of display alone do not.
     const uint64_t moves = model_.view.scene_version - model_.view.shown_changes;
-    if (scene_seen_ != moves && scene_seen_ != 0) moved_ = Clock::now();
+    const bool replaced = std::exchange(replaced_seen_, model_.view.replaced) != model_.view.replaced;
+    if (scene_seen_ != moves && scene_seen_ != 0 && !replaced) moved_ = Clock::now();
     scene_seen_ = moves;
+    if (replaced) relit_ = true, relit_seen_ = false;
     PictureRequest request;
     const double rest = seconds_at_rest();
     request.moving = rest < kRest;
@@ -445,6 +457,14 @@ void ViewSession::send_request() {
     // Averages of a sketch would take the processors from the conversion that replaces it.
     request.frame.accumulate = !request.moving && !std::ranges::any_of(scans_.rows(), grows);
     if (shot_) request.pictures = shot_->pictures;
+    // No engine stands in for the one that makes the new light.
+    relit_ = relit_ && !request.moving;
+    request.frame.complete = relit_;
+    request.small = relit_ && !relit_seen_ && !shot_ && is_slow(request.method.engine);
+    if (request.small) {
+        request.frame.size = scaled_size(window_.framebuffer(), kQuickScale * model_.view.resolution_scale);
+        request.pictures = 1;
+    }
     request.frame.moving = request.moving;
     request.frame.stand_in = request.moving;
     // Something is seen at once, and light follows.

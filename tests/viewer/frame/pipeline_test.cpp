@@ -115,6 +115,15 @@ TEST_F(PipelineTest, SaysWhichEnginesDrewThePictureAndLeavesASlowComparedOneOutO
     EXPECT_EQ(frame("unlit").compared_with, "reference");
 }
 
+TEST_F(PipelineTest, ACompletePictureWaitsForItsNodesSoThatNoEngineStandsIn) {
+    request_.wait = false;
+    request_.stand_in_early = request_.complete = true;
+    const FrameStats stats = frame("reference");
+    EXPECT_EQ(stats.nodes_pending, 0u);
+    EXPECT_EQ(stats.ready_points, stats.wanted_points);
+    EXPECT_EQ(stats.lit_by, "reference");
+}
+
 TEST_F(PipelineTest, ShowsTheColoursAloneInThePlaceOfAnyEngineWhenAsked) {
     const auto picture = [&] { return pipeline_->picture().download_all<uint32_t>(96 * 64); };
     frame("unlit");
