@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +20,9 @@ namespace {
 
 /// The number of points of the topmost nodes that are read to measure the surface.
 constexpr uint64_t kMeasuredPoints = 200'000;
+/// Bytes of loaded nodes that are kept. The coarsest ones are loaded several times before the first picture:
+/// for the surface, the bounds, the site, the range of colours, and to be drawn.
+constexpr uint64_t kMostKept = uint64_t{32} << 20;
 
 class CopcSource final : public NodeSource {
  public:
@@ -31,8 +36,9 @@ class CopcSource final : public NodeSource {
     const SourceHeader& header() const override { return header_; }
     std::span<const NodeInfo> nodes() const override { return nodes_; }
     uint64_t directory_bytes() const override {
-        return nodes_.size() *
-               (sizeof(NodeInfo) + sizeof(io::copc::Node) + sizeof(io::laz::ChunkPlace) + sizeof(uint32_t));
+        return nodes_.size() * (sizeof(NodeInfo) + sizeof(io::copc::Node) + sizeof(io::laz::ChunkPlace) +
+                                sizeof(uint32_t) + sizeof(kept_[0])) +
+               std::min(kMostKept, header_.points * header_.schema.stride);
     }
     Result<NodeData> load(uint32_t node) const override;
 
@@ -40,6 +46,7 @@ class CopcSource final : public NodeSource {
     Result<void> describe();
     Result<void> link();
     Result<void> measure();
+    Result<NodeData> decode(uint32_t node) const;
     Place place(const std::byte* record) const {
         return header_.root.place(io::position_of(header_.schema, record));
     }
@@ -50,7 +57,10 @@ class CopcSource final : public NodeSource {
     /// Where estimated normals are stored; null: every point has its own.
     const io::Attribute* normal_ = nullptr;
     std::vector<NodeInfo> nodes_;
-    std::vector<uint32_t> in_file_;  ///< index of each node in the file
+    std::vector<uint32_t> in_file_;                              ///< index of each node in the file
+    mutable std::mutex mutex_;                                   ///< guards the members below
+    mutable std::vector<std::shared_ptr<const NodeData>> kept_;  ///< of each node; null: is not kept
+    mutable uint64_t kept_bytes_ = 0;
 };
 
 /// Returns whether the points have normals of their own, judged from the root node, which is spread over all.
@@ -121,6 +131,7 @@ Result<void> CopcSource::link() {
     }
     for (size_t i = nodes_.size(); i-- > 1;)
         nodes_[nodes_[i].parent].subtree_count += nodes_[i].subtree_count;
+    kept_.resize(nodes_.size());
     return {};
 }
 
@@ -133,10 +144,10 @@ Result<void> CopcSource::measure() {
     std::vector<std::vector<uint64_t>> codes(last);
     FirstError error;
     parallel_ranges(last, 1, [&](size_t i, size_t) {
-        auto records = file_.read(in_file_[i]);
-        if (!records) return error.report(i, std::move(records).error());
-        for (size_t at = 0; at < records->size(); at += file_stride_)
-            codes[i].push_back(place(&(*records)[at]).code());
+        const auto data = load(static_cast<uint32_t>(i));
+        if (!data) return error.report(i, data.error());
+        for (size_t at = 0; at < data->records.size(); at += header_.schema.stride)
+            codes[i].push_back(place(&data->records[at]).code());
     });
     LUCARNE_TRY(error.result());
     std::vector<uint64_t> all;
@@ -147,6 +158,23 @@ Result<void> CopcSource::measure() {
 }
 
 Result<NodeData> CopcSource::load(uint32_t node) const {
+    {
+        std::unique_lock lock(mutex_);
+        if (const auto kept = kept_[node]) {
+            lock.unlock();
+            return *kept;
+        }
+    }
+    LUCARNE_ASSIGN(NodeData data, decode(node));
+    const std::lock_guard lock(mutex_);
+    if (!kept_[node] && kept_bytes_ + data.records.size() <= kMostKept) {
+        kept_bytes_ += data.records.size();
+        kept_[node] = std::make_shared<const NodeData>(data);
+    }
+    return data;
+}
+
+Result<NodeData> CopcSource::decode(uint32_t node) const {
     LUCARNE_ASSIGN(const auto records, file_.read(in_file_[node]));
     const size_t count = records.size() / file_stride_, stride = header_.schema.stride;
     std::vector<Place> places(count);

@@ -156,7 +156,10 @@ void UndoHistory::change(ViewModel& model, UndoState& from, UndoState& to) {
     model.publish.editor.become(state.flythrough);
     model.lights.selected = std::min(model.lights.selected, scene.lights.size());
     if (!model.measure.selected_one()) model.measure.selected.reset();
-    if (drawn) model.view.scene_changed();
+    if (from.mood != to.mood)
+        model.view.light_replaced();
+    else if (drawn)
+        model.view.scene_changed();
     now_ = std::move(state);
 }
 

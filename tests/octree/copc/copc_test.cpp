@@ -1,4 +1,7 @@
 // COPC files as octrees: real ones, and ones with false contents.
+#include "octree/copc/copc.h"
+
+#include <atomic>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -130,6 +133,45 @@ TEST_F(CopcSquare, ItsFloorsAddUpToItsSurfaceAtEveryLevel) {
     for (const NodeInfo& node : nodes)
         for (size_t step = 1; step < kPrefixSteps; ++step)
             EXPECT_GE(node.area_floor[step], node.area_floor[step - 1]);
+}
+
+/// Counts the bytes that are read of a file.
+class CountedFile final : public ByteSource {
+ public:
+    explicit CountedFile(InputFile file)
+        : ByteSource(file.path(), file.size(), file.modified()), file_(std::move(file)) {}
+    Result<size_t> read_some(uint64_t offset, std::span<std::byte> out) const override {
+        bytes_ += out.size();
+        return file_.read_some(offset, out);
+    }
+    uint64_t bytes() const { return bytes_; }
+
+ private:
+    InputFile file_;
+    mutable std::atomic<uint64_t> bytes_{0};
+};
+
+TEST_F(CopcSquare, ANodeThatIsLoadedAgainIsNotReadAgain) {
+    auto file = InputFile::open(folder_ / "a.copc.laz");
+    ASSERT_TRUE(file);
+    const auto counted = std::make_shared<const CountedFile>(std::move(*file));
+    auto copc = open_copc(counted);
+    ASSERT_TRUE(copc) << copc.error().line();
+    std::vector<NodeData> first;
+    for (uint32_t node = 0; node < (*copc)->nodes().size(); ++node) {
+        auto data = (*copc)->load(node);
+        ASSERT_TRUE(data) << data.error().line();
+        first.push_back(std::move(*data));
+    }
+    const uint64_t read = counted->bytes();
+    EXPECT_GT(read, counted->size() / 2);
+    for (uint32_t node = 0; node < first.size(); ++node) {
+        const auto data = (*copc)->load(node);
+        ASSERT_TRUE(data);
+        EXPECT_EQ(data->count, first[node].count);
+        EXPECT_EQ(data->records, first[node].records);
+    }
+    EXPECT_EQ(counted->bytes(), read);
 }
 
 TEST_F(CopcSquare, EveryPrefixOfANodeIsEven) {
