@@ -41,6 +41,7 @@ std::span<const std::string_view> shading_names();
 struct Unlit {
     Shading shading = Shading::eye_dome;
     double strength = 1;           ///< of the shading, 0 to 10
+    double brightness = 1;         ///< the points' own colours are shown so many times as bright
     double eye_dome_pixels = 1.5;  ///< distance to the neighbours, in a picture 1080 pixels high
     double occlusion_reach = 4;    ///< how far points darken others, in percent of the distance to the eye
     bool operator==(const Unlit&) const = default;

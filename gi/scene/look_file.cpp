@@ -20,7 +20,8 @@ using glm::dvec3;
 using nlohmann::json;
 
 // data/README.md states these limits.
-constexpr JsonRange kSize{.05, 20}, kPixels{0, 64}, kStrength{0, 10}, kReach{.1, 50}, kDegrees{-360, 360};
+constexpr JsonRange kSize{.05, 20}, kPixels{0, 64}, kStrength{0, 10}, kBrightness{.1, 10}, kReach{.1, 50},
+    kDegrees{-360, 360};
 constexpr JsonRange kValue{-1e300, 1e300};
 
 template <class Names>
@@ -160,6 +161,7 @@ Result<Look> read_look(JsonObject object) {
                    object.choice("shading", list(shading_names()), static_cast<size_t>(look.unlit.shading)));
     look.unlit.shading = static_cast<Shading>(shading);
     LUCARNE_ASSIGN(look.unlit.strength, object.number("shading_strength", kStrength, look.unlit.strength));
+    LUCARNE_ASSIGN(look.unlit.brightness, object.number("brightness", kBrightness, look.unlit.brightness));
     LUCARNE_ASSIGN(look.unlit.eye_dome_pixels,
                    object.number("eye_dome_pixels", kReach, look.unlit.eye_dome_pixels));
     LUCARNE_ASSIGN(look.unlit.occlusion_reach,
@@ -201,6 +203,7 @@ json write_look(const Look& look) {
     if (look.unlit.shading != plain.unlit.shading)
         written["shading"] = shading_names()[static_cast<size_t>(look.unlit.shading)];
     put("shading_strength", look.unlit.strength, plain.unlit.strength);
+    put("brightness", look.unlit.brightness, plain.unlit.brightness);
     put("eye_dome_pixels", look.unlit.eye_dome_pixels, plain.unlit.eye_dome_pixels);
     put("occlusion_reach", look.unlit.occlusion_reach, plain.unlit.occlusion_reach);
     if (look.backdrop.kind != Backdrop::Kind::scene)

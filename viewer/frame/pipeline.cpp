@@ -38,6 +38,13 @@ constexpr double kLeastLoadingTime = 0.002, kLoadingShare = 0.1;
 /// Time for which the first picture of all waits for its nodes, s: a few of them make no picture.
 constexpr double kFirstPatience = 0.1;
 
+/// Returns how points are shown without light. Colours that stand for values are shown as they are.
+gi::Unlit unlit_of(const gi::Look& look) {
+    gi::Unlit unlit = look.unlit;
+    if (look.colour != gi::ColourBy::colour) unlit.brightness = 1;
+    return unlit;
+}
+
 bool stopped(const FrameRequest& request) {
     return request.stop && *request.stop;
 }
@@ -298,7 +305,7 @@ Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& requ
                     .bake_offset = glm::vec3((bake.frame().origin - local.origin) * local.metres_per_unit),
                     .stop = request.stop,
                     .progress = request.progress,
-                    .unlit = scene.look.unlit,
+                    .unlit = unlit_of(scene.look),
                     .gl = on_device,
                     .times = times};
     return by.draw(frame);

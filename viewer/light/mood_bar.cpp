@@ -58,7 +58,7 @@ void draw_mood_bar(const Lighting& model) {
     const auto left = static_cast<float>(model.view.side_bar.pixels(ImGui::GetFontSize(), size.x));
     const float width = width_of(moods());
     if (size.x - left < 1.2f * width) return;  // it would hide the picture; the menu has them as well
-    ImGui::SetNextWindowPos(ImVec2((left + size.x - width) / 2, ImGui::GetFrameHeight() + scaled(6)));
+    ImGui::SetNextWindowPos(ImVec2((left + size.x - width) / 2, mood_bar_span().x));
     ImGui::SetNextWindowBgAlpha(0.45f);
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |

@@ -18,6 +18,10 @@ namespace {
 constexpr double kShareOfWeak = .6, kShareOfStrong = .85, kWeak = 2, kStrong = 4;
 constexpr double kWeakest = .04;  ///< component's square over that of the strongest
 
+/// Root mean square of the luminance, linear, below which a scan is dark. That of 20 scans photographed
+/// by day and by lamps was .22 to .9, of two dark ones .07.
+constexpr double kDarkScan = .18;
+
 double share_of(double ratio) {
     const double strength = std::clamp((ratio - kWeak) / (kStrong - kWeak), 0.0, 1.0);
     return glm::mix(kShareOfWeak, kShareOfStrong, strength);
@@ -36,6 +40,13 @@ void ColourCast::add(const io::Schema& schema, const std::byte* record, double w
         colour[c] = gi::srgb_to_linear(static_cast<float>(share));
     }
     sum_ += colour * colour;
+    ++count_;
+}
+
+double ColourCast::brightness() const {
+    if (!coloured()) return 1;
+    const double mean = std::sqrt(gi::luminance(sum_) / static_cast<double>(count_));
+    return std::clamp(kDarkScan / mean, 1.0, kMostBrightness);
 }
 
 glm::dvec3 ColourCast::result() const {

@@ -266,6 +266,7 @@ void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCame
     switch (mood) {
         case Mood::scan_colours:  // lights stay for the engines that use them
             scene.look.unlit.shading = site.coloured ? gi::Shading::occlusion : gi::Shading::relief;
+            scene.look.unlit.brightness = site.brightness;
             scene.look.backdrop = kSoftGrey;
             return;
         case Mood::daylight:

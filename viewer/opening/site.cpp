@@ -171,6 +171,7 @@ Site survey_site(const octree::NodeSource& source) {
                             only_station(source));
     site.cast = found.cast.result();
     site.coloured = found.cast.coloured();
+    site.brightness = found.cast.brightness();
     // A source of many nodes is no sketch, even if the coarsest ones have few points.
     site.sure = !has_gaps && (points.size() >= kEnoughPoints || source.nodes().size() > kMostNodes);
     return site;

@@ -45,9 +45,10 @@ struct Site {
     double enclosed_share = 0;        ///< of the places to stand, those in rooms
     std::array<glm::dvec3, 2> box{};  ///< robust bounds
     double metres_per_unit = 1;
-    glm::dvec3 cast{1.0};  ///< colour of the light in which the scan was photographed, linear, luminance 1
-    bool coloured = true;  ///< points have colours other than black
-    bool sure = true;      ///< false: seen in few points, more of which may show something else
+    glm::dvec3 cast{1.0};   ///< colour of the light in which the scan was photographed, linear, luminance 1
+    bool coloured = true;   ///< points have colours other than black
+    double brightness = 1;  ///< how many times as bright dark colours are shown
+    bool sure = true;       ///< false: seen in few points, more of which may show something else
     std::vector<glm::dvec3> outline;      ///< points that a view of all has to contain; at least one
     std::optional<StandingPlace> inside;  ///< if there is a room
     /// Where the scanner stood, if all was scanned from one place, which sees it. Not set if the site is seen

@@ -134,6 +134,9 @@ bool edit_shading(const Styling& model, gi::Look& look) {
     bool changed = choice("Shading", look.unlit.shading, gi::shading_names());
     if (look.unlit.shading != gi::Shading::flat)
         changed |= slider("Strength", look.unlit.strength, 0, 5, "%.2f");
+    if (look.colour == gi::ColourBy::colour)
+        changed |=
+            slider("Brightness", look.unlit.brightness, .25f, 8, "x %.2f", ImGuiSliderFlags_Logarithmic);
     return changed;
 }
 

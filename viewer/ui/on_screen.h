@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include <imgui.h>
@@ -40,18 +41,24 @@ inline CameraRig::Ray cursor_ray(const CameraRig& rig) {
                    static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y);
 }
 
-/// Returns the window's shape, and the part of it beside the side bar and below the menu bar.
+/// Returns a length for drawing over the picture: `dots` pixels on a screen of scale 1, scaled with the text.
+inline float scaled(float dots) {
+    return dots * ImGui::GetFontSize() / kTextPixels;
+}
+
+/// Returns the top and bottom of the bar of moods, pixels. Whether it is shown depends on the window's width.
+inline ImVec2 mood_bar_span() {
+    const float top = ImGui::GetFrameHeight() + scaled(6);
+    return {top, top + ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y};
+}
+
+/// Returns the window's shape, and the part of it beside the side bar and below the bar of moods.
 inline PictureShape picture_shape(const SideBar& side_bar) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     PictureShape shape{static_cast<double>(size.x) / size.y, {}};
     shape.free.left = -1 + 2 * side_bar.pixels(ImGui::GetFontSize(), size.x) / size.x;
-    shape.free.top = 1 - 2 * static_cast<double>(ImGui::GetFrameHeight()) / size.y;
+    shape.free.top = std::max(0.5, 1 - 2 * static_cast<double>(mood_bar_span().y) / size.y);
     return shape;
-}
-
-/// Returns a length for drawing over the picture: `dots` pixels on a screen of scale 1, scaled with the text.
-inline float scaled(float dots) {
-    return dots * ImGui::GetFontSize() / kTextPixels;
 }
 
 /// Draws the dark plate on which texts over the picture are legible.

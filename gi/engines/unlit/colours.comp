@@ -5,6 +5,7 @@ layout(local_size_x = 16, local_size_y = 4) in;
 
 layout(std430, binding = kBindRadiance) writeonly buffer Radiance { vec4 radiance[]; };
 uniform float strength;
+uniform float brightness;
 uniform float neighbour;  // distance of the neighbours, pixels
 
 #if defined(LUCARNE_EYE_DOME)
@@ -48,5 +49,6 @@ void main() {
     if (pixel.x >= int(camera.width) || pixel.y >= int(camera.height)) return;
     GBufferTexel texel = texel_at(pixel);
     if (!(texel.depth > 0.0)) return;
-    radiance[pixel.y * int(camera.width) + pixel.x] = vec4(texel_albedo(texel) * shade(pixel, texel), 1.0);
+    vec3 colour = min(brightness * texel_albedo(texel), vec3(1.0));
+    radiance[pixel.y * int(camera.width) + pixel.x] = vec4(colour * shade(pixel, texel), 1.0);
 }

@@ -75,6 +75,7 @@ Result<void> UnlitEngine::render(Frame& frame) {
     frame.gl.radiance.bind(unlit::kBindRadiance);
     set(*program, "camera", frame.camera);
     program->set("strength", static_cast<float>(frame.unlit.strength));
+    program->set("brightness", static_cast<float>(frame.unlit.brightness));
     const double pixels = frame.unlit.eye_dome_pixels * frame.camera.height / 1080.0;
     program->set("neighbour", static_cast<float>(std::max(pixels, 1.0)));
     program->dispatch(frame.gl.gbuffer.width, frame.gl.gbuffer.height);

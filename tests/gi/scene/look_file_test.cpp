@@ -19,7 +19,7 @@ constexpr const char* kWholeLook = R"({
   "colour": "attribute", "attribute": "gps_time", "map": "cool-warm", "reversed": true,
   "range": {"low": 1.5, "high": -2}, "hidden_classes": [7, 18], "point_size": 2, "point_pixels": 3,
   "outliers": 2, "single_discs": true,
-  "shading": "occlusion", "shading_strength": 0.5, "eye_dome_pixels": 3, "occlusion_reach": 6,
+  "shading": "occlusion", "shading_strength": 0.5, "brightness": 2, "eye_dome_pixels": 3, "occlusion_reach": 6,
   "backdrop": {"top": [0.1, 0.2, 0.3], "bottom": [0, 0, 0.5]},
   "clip": {"boxes": [{"min": [0, 1, 2], "max": [3, 4, 5], "rotation": 30, "inverted": true}],
            "planes": [{"position": [1, 1, 1], "normal": [0, 0, -2], "inverted": true}], "casts": true},

@@ -20,8 +20,8 @@ io::Schema colours() {
     return schema;
 }
 
-/// The cast of points with these sRGB-coded colours, of 255.
-glm::dvec3 cast_of(std::initializer_list<glm::vec3> points) {
+/// What is found in points with these sRGB-coded colours, of 255.
+ColourCast found_in(std::initializer_list<glm::vec3> points) {
     const io::Schema schema = colours();
     ColourCast cast;
     for (const glm::vec3& colour : points) {
@@ -29,7 +29,10 @@ glm::dvec3 cast_of(std::initializer_list<glm::vec3> points) {
         std::memcpy(&record[schema.find(io::names::color)->offset], &colour, sizeof colour);
         cast.add(schema, record.data(), 255);
     }
-    return cast.result();
+    return cast;
+}
+glm::dvec3 cast_of(std::initializer_list<glm::vec3> points) {
+    return found_in(points).result();
 }
 
 TEST(ColourCast, GreyPointsHaveNone) {
@@ -57,6 +60,15 @@ TEST(ColourCast, MoreOfAStrongColourThanOfAWeakOneIsLight) {
     EXPECT_NEAR(share(100), .85, .001);  // 4.5 times
     EXPECT_GT(share(120), .61);
     EXPECT_LT(share(120), .84);
+}
+
+TEST(ColourCast, DarkColoursAreToBeShownBrighterWithinBounds) {
+    EXPECT_EQ(found_in({{200, 190, 180}, {90, 100, 110}}).brightness(), 1);
+    const double dark = found_in({{80, 80, 80}, {60, 60, 60}}).brightness();
+    EXPECT_GT(dark, 1.5);
+    EXPECT_LT(dark, kMostBrightness);
+    EXPECT_EQ(found_in({{9, 9, 9}}).brightness(), kMostBrightness);
+    for (const auto& none : {found_in({}), found_in({{0, 0, 0}})}) EXPECT_EQ(none.brightness(), 1);
 }
 
 TEST(ColourCast, IsBoundedAndWhiteWithoutColours) {

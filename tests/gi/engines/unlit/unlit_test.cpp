@@ -49,6 +49,16 @@ TEST_F(UnlitTest, FlatColoursAreThePointsOwnWhateverTheLights) {
         EXPECT_LT(glm::distance(glm::vec3(pixel), glm::vec3(0.2f, 0.5f, 0.8f)), 0.003f);
 }
 
+TEST_F(UnlitTest, DarkColoursAreShownSoManyTimesAsBrightAndNoneOverWhite) {
+    std::vector<Surfel> surfels;
+    add_wall(surfels, 0, -4, {0.1f, 0.2f, 0.8f});
+    LitOptions options;
+    options.unlit.brightness = 2;
+    const Lit bright = draw(surfels, ahead(), Shading::flat, options);
+    for (const glm::vec4& pixel : bright.radiance)
+        EXPECT_LT(glm::distance(glm::vec3(pixel), glm::vec3(0.2f, 0.4f, 1.0f)), 0.006f);
+}
+
 TEST_F(UnlitTest, WhereNoPointIsTheBackgroundShows) {
     LitOptions options;
     options.background = {0.1f, 0.2f, 0.3f};
