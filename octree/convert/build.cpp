@@ -171,10 +171,15 @@ Result<ScanFacts> scan_and_count(const Unifier& inputs, InputRange own, const Me
         if (options.listener) options.listener->read(records);
         return steps.add(records.size() / inputs.schema().stride);
     };
-    if (options.ranks) return scan_together(inputs, own, memory, *options.ranks, seen, counted);
     EarlyCount early(inputs, memory.grid_bytes);
-    LUCARNE_ASSIGN(auto facts, scan_inputs(inputs, memory.batch_bytes, 0, &early, seen));
+    LUCARNE_ASSIGN(auto facts, options.ranks ? scan_together(inputs, own, memory.batch_bytes, *options.ranks,
+                                                             0, &early, seen)
+                                             : scan_inputs(inputs, memory.batch_bytes, 0, &early, seen));
     counted = early.take(facts);
+    if (!options.ranks) return facts;
+    uint64_t have = counted ? 1 : 0;
+    LUCARNE_TRY(options.ranks->sum({&have, 1}));
+    if (have < options.ranks->count()) counted.reset();  // all ranks have the counts, or none
     return facts;
 }
 

@@ -12,7 +12,6 @@
 #include "octree/cache/format.h"
 #include "octree/cache/metadata.h"
 #include "octree/convert/chunks/record_bytes.h"
-#include "octree/convert/scans/early_count.h"
 
 namespace lucarne::octree {
 namespace {
@@ -105,9 +104,9 @@ Result<void> add_divided(ScanFacts& found, const Unifier& inputs, size_t input, 
 
 }  // namespace
 
-Result<InputRange> inputs_of_rank(const Unifier& inputs, const Ranks& ranks) {
-    std::vector<uint64_t> weights;
-    for (size_t input = 0; input < inputs.inputs(); ++input) {
+Result<InputRange> inputs_of_rank(const Unifier& inputs, const Ranks& ranks, size_t first_input) {
+    std::vector<uint64_t> weights(first_input, 0);
+    for (size_t input = first_input; input < inputs.inputs(); ++input) {
         const io::ScanInfo& info = inputs.source(input).info();
         std::error_code unknown;
         uint64_t points = info.declared_points;
@@ -122,11 +121,12 @@ Result<InputRange> inputs_of_rank(const Unifier& inputs, const Ranks& ranks) {
         most = std::max(most, before[first[rank + 1]] - before[first[rank]]);
     const double all = static_cast<double>(before.back()), count = static_cast<double>(ranks.count());
     if (static_cast<double>(most) * count <= kEven * all)
-        return InputRange{first[ranks.rank()], first[ranks.rank() + 1]};
+        return InputRange{std::max(first[ranks.rank()], first_input),
+                          std::max(first[ranks.rank() + 1], first_input)};
     const auto place = [&](size_t rank) {
         return place_behind(inputs, before, static_cast<uint64_t>(all / count * static_cast<double>(rank)));
     };
-    InputPlace begin, end{inputs.inputs(), 0};
+    InputPlace begin{first_input, 0}, end{inputs.inputs(), 0};
     if (ranks.rank() > 0) {
         LUCARNE_ASSIGN(begin, place(ranks.rank()));
     }
@@ -138,13 +138,12 @@ Result<InputRange> inputs_of_rank(const Unifier& inputs, const Ranks& ranks) {
     return InputRange{begin.input, end.input + 1, begin.point, end.point};
 }
 
-Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const MemoryPlan& memory, Ranks& ranks,
-                                const Visit& seen, std::optional<CountGrid>& counted) {
-    EarlyCount early(inputs, memory.grid_bytes);
+Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, uint64_t batch_bytes, Ranks& ranks,
+                                size_t first, EarlyCount* early, const Visit& seen_by) {
     PartRuns parts;
     const auto scan_own = [&] {
         const log::Speaking about_own_inputs(ranks.rank() > 0);
-        return scan_range(inputs, own, memory.batch_bytes, kMostEstimatedStations, &early, seen, &parts);
+        return scan_range(inputs, own, batch_bytes, kMostEstimatedStations, early, seen_by, &parts);
     };
     LUCARNE_ASSIGN(ScanFacts found, scan_own());
     LUCARNE_ASSIGN(const auto ranges, share_ranges(own, ranks));
@@ -158,7 +157,7 @@ Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const Mem
     size_t room = kMostEstimatedStations;
     for (size_t rank = 0; rank < ranks.rank(); ++rank) room -= std::min(room, stations[rank]);
     if (found.stations.size() > room) {  // which parts a scan's stations saw depends on how many it has
-        LUCARNE_ASSIGN(found, scan_range(inputs, own, memory.batch_bytes, room, nullptr, {}));
+        LUCARNE_ASSIGN(found, scan_range(inputs, own, batch_bytes, room, nullptr, {}));
         if (parts.first_part)
             LUCARNE_TRY(add_divided(found, inputs, own.end - 1, *parts.first_part, later_parts, room));
     }
@@ -168,11 +167,7 @@ Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const Mem
         LUCARNE_ASSIGN(auto later, ScanFacts::restore(all[rank]));
         facts.join(std::move(later), ranges[rank].first_point > 0);
     }
-    LUCARNE_TRY(complete_scan(inputs, 0, facts));
-    counted = early.take(facts);
-    uint64_t have = counted ? 1 : 0;
-    LUCARNE_TRY(ranks.sum({&have, 1}));
-    if (have < ranks.count()) counted.reset();
+    LUCARNE_TRY(complete_scan(inputs, first, facts));
     return facts;
 }
 
@@ -185,13 +180,19 @@ Result<void> check_program(Ranks& ranks) {
 }
 
 Result<void> check_ranks(Ranks& ranks, const BuildOptions& options) {
+    return check_ranks(ranks,
+                       fmt::format("{} {} {} {} {} {}", options.memory, static_cast<int>(options.normals),
+                                   options.neighbours, static_cast<int>(options.neighbour_search),
+                                   options.fill, options.read_options),
+                       options.inputs);
+}
+
+Result<void> check_ranks(Ranks& ranks, std::string_view options,
+                         std::span<const io::PointSource* const> inputs) {
     LUCARNE_TRY(check_program(ranks));
-    LUCARNE_TRY(check_same(ranks, "--memory or another option",
-                           fmt::format("{} {} {} {} {} {}", options.memory, static_cast<int>(options.normals),
-                                       options.neighbours, static_cast<int>(options.neighbour_search),
-                                       options.fill, options.read_options)));
+    LUCARNE_TRY(check_same(ranks, "--memory or another option", std::string(options)));
     std::string seen;
-    for (const auto* input : options.inputs) {
+    for (const auto* input : inputs) {
         SourceHeader header{.schema = input->schema()};
         header.scans.push_back(input->info());
         const std::string facts = metadata_text(header);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string_view>
 
 #include "io/files/shared_output.h"
 #include "octree/cache/writer.h"
@@ -10,19 +12,23 @@
 
 namespace lucarne::octree {
 
-/// Returns the inputs that this rank reads. The ranks read consecutive inputs with about equally many points:
-/// whole ones if that is even enough, else also parts of those that can be divided. Errors: unreadable.
-Result<InputRange> inputs_of_rank(const Unifier& inputs, const Ranks& ranks);
+/// Returns which of the inputs from `first` on this rank reads. The ranks read consecutive inputs with about
+/// equally many points: whole ones if that is even enough, else also parts of those that can be divided.
+/// Errors: unreadable.
+Result<InputRange> inputs_of_rank(const Unifier& inputs, const Ranks& ranks, size_t first = 0);
 
-/// Scans the inputs on all ranks. `seen` gets the points of this rank. `counted` becomes the counts of this
-/// rank's points for the chunks, on all ranks or on none. A meeting.
-Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, const MemoryPlan& memory, Ranks& ranks,
-                                const Visit& seen, std::optional<CountGrid>& counted);
+/// Scans the inputs from `first` on, on all ranks. `early` and `seen_by` get the points of this rank. A
+/// meeting.
+Result<ScanFacts> scan_together(const Unifier& inputs, InputRange own, uint64_t batch_bytes, Ranks& ranks,
+                                size_t first = 0, EarlyCount* early = nullptr, const Visit& seen_by = {});
 
 /// Errors: the ranks run different programs. A meeting.
 Result<void> check_program(Ranks& ranks);
 /// Errors: the ranks run different programs, or see different inputs or options. A meeting.
 Result<void> check_ranks(Ranks& ranks, const BuildOptions& options);
+/// Does the same for other options, given as text.
+Result<void> check_ranks(Ranks& ranks, std::string_view options,
+                         std::span<const io::PointSource* const> inputs);
 
 /// The file that all ranks write.
 struct SharedCache {

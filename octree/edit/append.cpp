@@ -5,8 +5,10 @@
 
 #include "io/core/log.h"
 #include "io/formats/scan.h"
+#include "octree/cluster/only_rank.h"
 #include "octree/convert/build_inputs.h"
 #include "octree/convert/scans/scan_stage.h"
+#include "octree/convert/together.h"
 #include "octree/edit/edit_plan.h"
 #include "octree/edit/rewrite.h"
 #include "octree/tree/attributes.h"
@@ -61,19 +63,19 @@ io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache, size_t s
     return schema;
 }
 
-/// Returns a pass over the new points in the cache's schema. Normals, areas and lines are marked as not
-/// yet estimated.
-Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_before,
+/// Returns a pass over the new points of a range in the cache's schema. Normals, areas and lines are marked
+/// as not yet estimated.
+Pass added_points(const Unifier& inputs, InputRange range, const io::Schema& schema, size_t scans_before,
                   uint64_t batch_bytes) {
     const RecordMap map(inputs.schema(), schema);
-    return [&inputs, schema, map, scans_before, batch_bytes](const Visit& visit) -> Result<void> {
+    return [&inputs, range, schema, map, scans_before, batch_bytes](const Visit& visit) -> Result<void> {
         const auto* normal = schema.find(io::names::normal_oct);
         const auto* area = schema.find(io::names::area);
         const auto* edge = schema.find(io::names::edge_line);
         const ScanNumber scan(schema);
         std::vector<std::byte> records;
-        return pass_over_inputs(inputs, {0, inputs.inputs()},
-                                batch_bytes)([&](std::span<const std::byte> batch) -> Result<void> {
+        const Pass pass = pass_over_inputs(inputs, range, batch_bytes);
+        return pass([&](std::span<const std::byte> batch) -> Result<void> {
             map.convert(batch.data(), batch.size() / inputs.schema().stride, records);
             for (size_t at = 0; at < records.size(); at += schema.stride) {
                 std::byte* record = &records[at];
@@ -192,20 +194,42 @@ Result<bool> holds_already(const CacheFile& cache, const io::ScanInfo& scan) {
     return false;
 }
 
-}  // namespace
+/// Returns which of the scans the cache already contains, as rank 0 finds. A meeting.
+Result<std::vector<bool>> held_already(const CacheFile& cache,
+                                       const std::vector<const io::PointSource*>& scans, Ranks& ranks) {
+    Ranks::Bytes there(scans.size());
+    if (ranks.rank() == 0)
+        for (size_t i = 0; i < scans.size(); ++i) {
+            LUCARNE_ASSIGN(const bool held, holds_already(cache, scans[i]->info()));
+            there[i] = std::byte{held};
+        }
+    LUCARNE_ASSIGN(there, hear_first(ranks, std::move(there)));
+    std::vector<bool> result;
+    for (const std::byte held : there) result.push_back(held != std::byte{0});
+    return result;
+}
 
-Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& scans,
-                                   const EditOptions& options) {
+/// Appends; of several ranks each does its part.
+Result<EditReport> append(const std::vector<const io::PointSource*>& scans, const EditOptions& options,
+                          Ranks& ranks) {
     constexpr uint64_t kBatchBytes = 1 << 20;
-    LUCARNE_ASSIGN(OpenedCache opened, OpenedCache::open(options.cache));
+    const bool shared = ranks.count() > 1;
+    if (shared) {
+        LUCARNE_TRY(check_ranks(ranks,
+                                fmt::format("{} {} {}", options.memory, options.neighbours,
+                                            static_cast<int>(options.neighbour_search)),
+                                scans));
+    }
+    LUCARNE_ASSIGN(OpenedCache opened, OpenedCache::open(options.cache, ranks));
+    LUCARNE_ASSIGN(const auto held, held_already(*opened.cache, scans, ranks));
     const auto& before = opened.cache->header();
     const CacheSchema cache(*opened.cache);
     std::vector<const io::PointSource*> sources{&cache};
     std::vector<io::ScanInfo> all = before.scans;
     EditReport skipped;
-    for (const auto* scan : scans) {
-        LUCARNE_ASSIGN(const bool there, holds_already(*opened.cache, scan->info()));
-        if (there) {
+    for (size_t i = 0; i < scans.size(); ++i) {
+        const auto* scan = scans[i];
+        if (held[i]) {
             skipped.already_in.push_back(scan->info().path);
             continue;
         }
@@ -221,7 +245,17 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     }
     warn_of_differences(all);
     LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(sources, replaces_normals(before.schema)));
-    LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes, 1));
+    InputRange own{1, inputs.inputs()};
+    if (shared) {
+        LUCARNE_ASSIGN(own, inputs_of_rank(inputs, ranks, 1));
+    }
+    const auto go_on = [&](std::span<const std::byte>) -> Result<void> {
+        if (ranks.stopped()) return failed("the update", "has failed on another rank");
+        return {};
+    };
+    LUCARNE_ASSIGN(const ScanFacts facts,
+                   shared ? scan_together(inputs, own, kBatchBytes, ranks, 1, nullptr, go_on)
+                          : scan_inputs(inputs, kBatchBytes, 1));
     sources.erase(sources.begin());  // removes the cache
     for (const auto* scan : sources) warn_of_assumed_unit(scan->info(), before.metres_per_unit);
     const bool lit = before.schema.find(io::names::area) && !before.schema.find(io::names::normal_oct);
@@ -234,14 +268,27 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     Change change;
     LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));
     change.spans = added_spans(before, change.header, facts);
-    change.added = added_points(inputs, change.header.schema, before.scans.size(), kBatchBytes);
+    change.added = added_points(inputs, own, change.header.schema, before.scans.size(), kBatchBytes);
+    change.first_added = {static_cast<uint32_t>(before.scans.size() + own.first - 1), own.first_point};
     LUCARNE_ASSIGN(change.changed, count_by_node(*opened.cache, change.header, change.added));
+    LUCARNE_TRY(ranks.sum(change.changed));
     LUCARNE_ASSIGN(EditReport report, rewrite(std::move(opened), change, options));
     report.added = facts.points;
     report.dropped = facts.dropped;
     report.appended = std::move(sources);
     report.inputs = facts.inputs;
     report.already_in = std::move(skipped.already_in);
+    return report;
+}
+
+}  // namespace
+
+Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& scans,
+                                   const EditOptions& options) {
+    OnlyRank alone;
+    Ranks& ranks = options.ranks ? *options.ranks : alone;
+    auto report = append(scans, options, ranks);
+    LUCARNE_TRY(ranks.conclude(report ? Result<void>() : tl::make_unexpected(report.error())));
     return report;
 }
 

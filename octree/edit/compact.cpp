@@ -57,7 +57,7 @@ uint64_t live_bytes(const CacheFile& cache) {
 }
 
 Result<CompactReport> compact(const OpenedCache& opened, const std::filesystem::path& temp_folder) {
-    const auto& path = opened.file.path();
+    const auto& path = opened.file->path();
     LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(path, true, scratch_folder(path, temp_folder)));
     Copier copier(*opened.cache, writer);
     LUCARNE_TRY(copier.below(0));

@@ -9,6 +9,8 @@
 
 namespace lucarne::octree {
 
+class Ranks;
+
 struct EditOptions {
     std::filesystem::path cache;
     uint64_t memory = uint64_t{2} << 30;  ///< cap on an edit's memory besides the cache's directory, bytes
@@ -16,6 +18,9 @@ struct EditOptions {
     std::filesystem::path temp_folder;    ///< for scratch files; empty: the cache's folder
     uint32_t neighbours = 16;             ///< number of neighbours for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
+    /// The processes that append together; null: this one alone. All have the same options, and see the
+    /// cache.
+    Ranks* ranks = nullptr;
 };
 
 /// Which points to delete: those that match every given criterion.
@@ -39,6 +44,8 @@ struct EditReport {
 /// Then one superblock switches to the new state. If the update is killed or fails before that, the cache
 /// keeps its old state. Readers that have the cache open keep the old state. Errors besides those of a build:
 /// another process is changing the cache; scans in another unit or too far away.
+/// Several ranks write the same bytes as one process with the same memory, and all return the error of one of
+/// them. Their report is complete at rank 0.
 Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& scans,
                                    const EditOptions& options);
 

@@ -1,5 +1,4 @@
 // Several ranks write the same bytes as one process.
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/cluster/ranks.h"
+#include "tests/cluster/silent_scan.h"
 
 namespace lucarne {
 namespace {
@@ -97,21 +97,8 @@ TEST_F(SameBytes, WithNormalsOfOneTileWithStations) {
     expect_same({"nave.laz"}, "--no-fill");
 }
 
-/// Makes a scan whose stations a conversion has to find: the record that states them gets another name.
-void make_silent(const test::TemporaryFolder& folder, const std::string& name, const std::string& points) {
-    const Outcome made = lucarne("generate two-rooms --points " + points + " -o " + folder / name);
-    ASSERT_EQ(made.code, 0) << made.output;
-    std::string bytes = test::bytes_of(folder / name);
-    const std::string user("lucarne\0", 8), other("nobody1\0", 8);
-    size_t found = 0;
-    for (size_t at = 0; (at = bytes.find(user, at)) != std::string::npos; ++found)
-        std::ranges::copy(other, bytes.begin() + static_cast<ptrdiff_t>(at));
-    ASSERT_GT(found, 0u);
-    std::ofstream(folder / name, std::ios::binary) << bytes;
-}
-
 TEST_F(SameBytes, OfOneFileOfWhichEachRankReadsAPart) {
-    make_silent(*folder_, "silent.las", "60k");
+    test::make_silent(*folder_, "silent.las", "60k");
     expect_same({"silent.las"}, "");
     const Outcome two = on_ranks(
         2, "convert " + inputs({"silent.las"}) + "--memory 48M --overwrite -o " + *folder_ / "together.luc");
@@ -120,7 +107,7 @@ TEST_F(SameBytes, OfOneFileOfWhichEachRankReadsAPart) {
 }
 
 TEST_F(SameBytes, OfALargeCompressedFileBetweenSmallOnes) {
-    make_silent(*folder_, "silent.laz", "220k");
+    test::make_silent(*folder_, "silent.laz", "220k");
     expect_same({"statue.ply", "silent.laz", "cornell.las"}, "--no-fill");
 }
 
@@ -142,22 +129,6 @@ TEST_F(SameBytes, WhereEachRankSeesOnlyItsShareOfTheFiles) {
     const Outcome two = test::shell(test::mpirun(2) + "sh " + script);
     ASSERT_EQ(two.code, 0) << two.output;
     EXPECT_TRUE(test::bytes_of(*folder_ / "alone.luc") == test::bytes_of(*folder_ / "together.luc"));
-}
-
-TEST_F(SameBytes, OfACacheThatIsAppendedTo) {
-    const std::string alone = *folder_ / "alone.luc", together = *folder_ / "together.luc";
-    const auto what = [](const std::vector<std::string>& names, const std::string& cache) {
-        return "convert " + inputs(names) + "--memory 48M -o " + cache;
-    };
-    std::filesystem::remove(alone);
-    std::filesystem::remove(together);
-    ASSERT_EQ(lucarne(what({"nave.laz"}, alone)).code, 0);
-    std::filesystem::copy_file(alone, together);
-    ASSERT_EQ(lucarne(what({"rooms.las", "cornell.las"}, alone) + " --append").code, 0);
-    const Outcome several = on_ranks(3, what({"rooms.las", "cornell.las"}, together) + " --append");
-    ASSERT_EQ(several.code, 0) << several.output;
-    EXPECT_TRUE(test::bytes_of(alone) == test::bytes_of(together));
-    ASSERT_EQ(lucarne("verify " + together).code, 0);
 }
 
 TEST_F(SameBytes, WithKeptNormals) {

@@ -153,7 +153,7 @@ using Scans = std::vector<std::unique_ptr<io::PointSource>>;
 Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
     const std::vector<std::string> paths = options.inputs;
     std::vector<Result<ScanHeader>> headers;
-    if (options.build.ranks && !options.append) {
+    if (options.build.ranks) {
         LUCARNE_ASSIGN(headers, read_headers_together(paths, options.read, *options.build.ranks));
     } else {
         headers = read_headers(paths, options.read);
@@ -186,8 +186,8 @@ auto build_of_the_sound(ConvertOptions& options, SetAside& aside, Scans& scans, 
 
 Result<void> append(ConvertOptions options, SetAside& aside) {
     const auto& build = options.build;
-    const octree::EditOptions edit{build.output,      build.memory,     build.threads,
-                                   build.temp_folder, build.neighbours, build.neighbour_search};
+    const octree::EditOptions edit{build.output,     build.memory,           build.threads, build.temp_folder,
+                                   build.neighbours, build.neighbour_search, build.ranks};
     Scans scans;
     LUCARNE_ASSIGN(auto report, build_of_the_sound(options, aside, scans, [&] {
                        return octree::append_to_cache(build.inputs, edit);
@@ -195,6 +195,7 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
     log::info("{}: {} added, {} in all; {} were rewritten, {} of {} nodes stayed{}", build.output.string(),
               counted(report.added, "points"), report.points, report.rewritten_points, report.kept_nodes,
               report.nodes, Summary(report.appended, report.inputs).text());
+    if (build.ranks && build.ranks->rank() > 0) return aside.result(build.output.string());
     compact_after_update(edit, report);
     if (!options.json.empty()) LUCARNE_TRY(write_edit_report(options.json, build.overwrite, report));
     return aside.result(build.output.string());
@@ -203,8 +204,6 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
 Result<void> convert(ConvertOptions options) {
     auto& build = options.build;
     if (build.ranks && build.ranks->count() == 1) build.ranks = nullptr;
-    // One rank changes the cache in place. The others wait for its outcome (main_mpi.cpp).
-    if (options.append && build.ranks && build.ranks->rank() > 0) return {};
     LUCARNE_ASSIGN(build.memory, build_memory(options.memory));
     const std::string output = build.output.string();
     if (names_scan(output))

@@ -122,53 +122,41 @@ Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPla
     return refine(std::move(coarse), memory);
 }
 
-Result<void> ChunkStore::fill(const Pass& pass, std::span<const NodeKey> cubes, bool split,
-                              const MemoryPlan& memory) {
-    const auto at_finest = [](const NodeKey& key, uint64_t code) {
-        return code << 3 * (kMaxLevel - key.level);
-    };
-    std::vector<uint64_t> begins, ends;
-    std::vector<Chunk> chunks;
-    for (const auto& key : cubes) {
-        begins.push_back(at_finest(key, key.code()));
-        ends.push_back(at_finest(key, key.code() + 1));
-        chunks.push_back({.key = key});
-    }
-    const auto find = [&](const std::byte* record) {
-        const uint64_t code = root_.place(io::position_of(schema_, record)).code();
-        const auto behind = std::upper_bound(begins.begin(), begins.end(), code) - begins.begin();
-        const auto chunk = static_cast<size_t>(behind) - 1;
-        return behind > 0 && code < ends[chunk] ? chunk : chunks.size();
-    };
-    const auto each = [&](std::span<const std::byte> records, const auto& use) -> Result<void> {
+Result<std::vector<uint64_t>> ChunkStore::count_in(const GivenCubes& cubes, const Pass& pass) const {
+    std::vector<uint64_t> counts(cubes.size() + 1);
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) -> Result<void> {
         for (size_t at = 0; at < records.size(); at += schema_.stride)
-            if (const size_t chunk = find(&records[at]); chunk < chunks.size())
-                LUCARNE_TRY(use(chunk, &records[at]));
+            ++counts[cubes.of(root_.place(io::position_of(schema_, &records[at])))];
         return {};
-    };
-    LUCARNE_TRY(pass([&](std::span<const std::byte> records) {
-        return each(records, [&](size_t chunk, const std::byte*) -> Result<void> {
-            ++chunks[chunk].count;
-            return {};
-        });
     }));
-    for (auto& chunk : chunks) {
-        chunk.first = end_;
-        end_ += chunk.count;
-    }
+    counts.pop_back();  // those outside
+    return counts;
+}
+
+/// Writes the points in as many cubes as there are chunks, from `first` on, to the places of the chunks.
+Result<void> ChunkStore::deal(const Pass& pass, const GivenCubes& cubes, size_t first,
+                              std::span<Chunk> chunks, const MemoryPlan& memory) {
     if (chunks.empty()) return {};
     Dealer dealer(file_, chunks, 0, schema_.stride, memory.buffer_bytes);
-    LUCARNE_TRY(pass([&](std::span<const std::byte> records) {
-        return each(records,
-                    [&](size_t chunk, const std::byte* record) { return dealer.deal(chunk, record); });
-    }));
-    LUCARNE_TRY(dealer.finish());
-    if (!split) {
-        chunks_ = std::move(chunks);
+    const auto each = [&](std::span<const std::byte> records) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += schema_.stride) {
+            const size_t cube = cubes.of(root_.place(io::position_of(schema_, &records[at])));
+            if (cube >= first && cube - first < chunks.size())
+                LUCARNE_TRY(dealer.deal(cube - first, &records[at]));
+        }
         return {};
+    };
+    LUCARNE_TRY(pass(each));
+    return dealer.finish();
+}
+
+Result<void> ChunkStore::fill(const Pass& pass, const GivenCubes& cubes, const MemoryPlan& memory) {
+    LUCARNE_ASSIGN(const auto counts, count_in(cubes, pass));
+    for (size_t cube = 0; cube < cubes.size(); ++cube) {
+        chunks_.push_back({.key = cubes.key(cube), .first = end_, .count = counts[cube]});
+        end_ += counts[cube];
     }
-    std::erase_if(chunks, [](const Chunk& chunk) { return chunk.count == 0; });
-    return refine(std::move(chunks), memory);
+    return deal(pass, cubes, 0, chunks_, memory);
 }
 
 /// Counts the points of `cube` in a grid.

@@ -9,6 +9,7 @@
 #include "io/files/file.h"
 #include "octree/cluster/ranks.h"
 #include "octree/convert/chunks/chunk_plan.h"
+#include "octree/convert/chunks/given_cubes.h"
 #include "octree/normals/normals.h"
 #include "octree/tree/source.h"
 
@@ -46,10 +47,11 @@ class ChunkStore {
     Result<void> fill(const Pass& pass, uint64_t points, const MemoryPlan& memory,
                       std::optional<CountGrid> counted = {});
 
-    /// Sorts points into the given chunks instead: disjoint cubes of kMaxLevel or above, in Morton order.
-    /// Points outside all of them are left out. If `split`, chunks that are too large are split, and chunks
-    /// without points are left out.
-    Result<void> fill(const Pass& pass, std::span<const NodeKey> cubes, bool split, const MemoryPlan& memory);
+    /// Sorts points into the given chunks instead. Points outside all of them are left out; chunks may be
+    /// empty.
+    Result<void> fill(const Pass& pass, const GivenCubes& cubes, const MemoryPlan& memory);
+    /// Counts the points of a pass in each cube.
+    Result<std::vector<uint64_t>> count_in(const GivenCubes& cubes, const Pass& pass) const;
 
     /// Sorts the points of all ranks into chunks, each of which goes to one rank: the same chunks as one
     /// process makes of all inputs. A meeting of the ranks. `own`: the points that this rank reads; the ranks
@@ -57,6 +59,17 @@ class ChunkStore {
     /// points; all ranks have it or none. `resumable`: the store will be saved.
     Result<void> fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
                       bool resumable, std::optional<CountGrid> counted);
+    /// What this rank contributes to chunks that are given.
+    struct Given {
+        Pass present;  ///< points that the rank gets itself; those in cubes of other ranks are left out
+        Pass added;    ///< points that the ranks share out as above; all of them are in the cubes
+        std::span<const uint64_t> counts;       ///< of `added` in each cube
+        std::span<const size_t> first_of_rank;  ///< the first cube of each rank, and the number of cubes
+    };
+    /// Sorts points into the given chunks of all ranks. A chunk has the points that were present before those
+    /// that are added. Chunks that are too large are split, and chunks without points are left out. A
+    /// meeting.
+    Result<void> fill(const Given& given, const GivenCubes& cubes, const MemoryPlan& memory, Ranks& ranks);
     /// Fills the store with this rank's share of the chunks that another number of ranks has made. `parts`:
     /// those that are in this process; together the ranks have all. `all`: all chunks. A meeting.
     Result<void> take_over(std::span<const ChunkStore* const> parts, std::span<const Chunk> all,
@@ -93,6 +106,8 @@ class ChunkStore {
                             const MemoryPlan& memory) const;
     Result<std::vector<Chunk>> distribute(const Pass& pass, CountGrid grid, uint64_t points,
                                           const MemoryPlan& memory);
+    Result<void> deal(const Pass& pass, const GivenCubes& cubes, size_t first, std::span<Chunk> chunks,
+                      const MemoryPlan& memory);
     Result<void> refine(std::vector<Chunk> coarse, const MemoryPlan& memory);
     Result<void> learn_others(Ranks& ranks);
     static size_t most_chunks(const MemoryPlan& memory, uint32_t stride);

@@ -1,6 +1,7 @@
 // Sorting the points of several ranks into chunks.
 #include <cassert>
 #include <cstring>
+#include <functional>
 #include <numeric>
 
 #include "octree/cluster/rounds.h"
@@ -34,17 +35,19 @@ struct Lane {
 /// in which they were read.
 class Delivery {
  public:
-    /// `lanes`: of each sender, of each chunk of this rank. `grid` and `root` tell the chunk of a record.
-    Delivery(Ranks& ranks, ScratchFile& file, const io::Schema& schema, const Cube& root,
-             const CountGrid& grid, std::vector<size_t> first_of_rank, std::vector<std::vector<Lane>> lanes,
-             uint64_t bytes)
+    /// Tells the chunk of a place; a number that no chunk has if it is in none.
+    using ChunkOf = std::function<size_t(const Place&)>;
+
+    /// `lanes`: of each sender, of each chunk of this rank.
+    Delivery(Ranks& ranks, ScratchFile& file, const io::Schema& schema, const Cube& root, ChunkOf chunk_of,
+             std::span<const size_t> first_of_rank, std::vector<std::vector<Lane>> lanes, uint64_t bytes)
         : ranks_(ranks),
           file_(file),
           schema_(schema),
           root_(root),
-          grid_(grid),
+          find_(std::move(chunk_of)),
           stride_(schema.stride),
-          first_(std::move(first_of_rank)),
+          first_(first_of_rank.begin(), first_of_rank.end()),
           lanes_(std::move(lanes)),
           rounds_(ranks, bytes,
                   [this](size_t sender, std::span<const std::byte> got) { return store(sender, got); }) {
@@ -54,7 +57,8 @@ class Delivery {
 
     Result<void> take(std::span<const std::byte> records) {
         for (size_t at = 0; at < records.size(); at += stride_) {
-            const uint32_t chunk = chunk_of(&records[at]);
+            const size_t chunk = chunk_of(&records[at]);
+            if (chunk >= rank_of_.size()) return inputs_changed();
             const uint32_t rank = rank_of_[chunk];
             rounds_.add(rank, records.subspan(at, stride_));
             if (rounds_.room(rank) < stride_) LUCARNE_TRY(rounds_.next());
@@ -78,7 +82,7 @@ class Delivery {
         chunks_.resize(count);
         starts_.assign(lanes.size() + 1, 0);
         for (size_t i = 0; i < count; ++i) {
-            chunks_[i] = chunk_of(&records[i * stride_]) - static_cast<uint32_t>(own);
+            chunks_[i] = static_cast<uint32_t>(chunk_of(&records[i * stride_]) - own);
             assert(chunks_[i] < lanes.size());
             ++starts_[chunks_[i] + 1];
         }
@@ -97,15 +101,15 @@ class Delivery {
         return {};
     }
 
-    uint32_t chunk_of(const std::byte* record) const {
-        return grid_.chunk_of(root_.place(io::position_of(schema_, record)));
+    size_t chunk_of(const std::byte* record) const {
+        return find_(root_.place(io::position_of(schema_, record)));
     }
 
     Ranks& ranks_;
     ScratchFile& file_;
     const io::Schema& schema_;
     const Cube& root_;
-    const CountGrid& grid_;
+    ChunkOf find_;
     uint32_t stride_;
     std::vector<size_t> first_;
     std::vector<std::vector<Lane>> lanes_;
@@ -117,9 +121,10 @@ class Delivery {
 };
 
 /// Tells each rank how many records of its chunks this rank has. Returns where those of each rank go, of each
-/// chunk of this rank.
+/// chunk of this rank. `present`: records that come first in each of these, empty for none.
 Result<std::vector<std::vector<Lane>>> plan_lanes(Ranks& ranks, std::span<const uint64_t> counts,
-                                                  const std::vector<size_t>& first_of_rank) {
+                                                  std::span<const size_t> first_of_rank,
+                                                  std::span<const uint64_t> present = {}) {
     std::vector<Bytes> parcels;
     for (size_t rank = 0; rank < ranks.count(); ++rank)
         parcels.push_back(
@@ -131,12 +136,22 @@ Result<std::vector<std::vector<Lane>>> plan_lanes(Ranks& ranks, std::span<const 
         for (const uint64_t count : from_parcel<uint64_t>(parcel)) of_sender.push_back({0, count});
     }
     uint64_t end = 0;
-    for (size_t chunk = 0; chunk < lanes[0].size(); ++chunk)
+    for (size_t chunk = 0; chunk < lanes[0].size(); ++chunk) {
+        if (!present.empty()) end += present[chunk];
         for (auto& sender : lanes) {
             sender[chunk].next = end;
             end = sender[chunk].end += end;
         }
+    }
     return lanes;
+}
+
+Result<void> deliver(Ranks& ranks, const Pass& pass, Delivery& delivery) {
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) -> Result<void> {
+        if (ranks.stopped()) return failed("the conversion", "has failed on another rank");
+        return delivery.take(records);
+    }));
+    return delivery.finish();
 }
 
 }  // namespace
@@ -158,13 +173,10 @@ Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan
     const auto first_of_rank = divide(weights, ranks.count());
     LUCARNE_ASSIGN(auto lanes, plan_lanes(ranks, counts, first_of_rank));
     {
-        Delivery delivery(ranks, file_, schema_, root_, *counted, first_of_rank, std::move(lanes),
-                          memory.buffer_bytes);
-        LUCARNE_TRY(own([&](std::span<const std::byte> records) -> Result<void> {
-            if (ranks.stopped()) return failed("the conversion", "has failed on another rank");
-            return delivery.take(records);
-        }));
-        LUCARNE_TRY(delivery.finish());
+        Delivery delivery(
+            ranks, file_, schema_, root_, [&](const Place& place) { return counted->chunk_of(place); },
+            first_of_rank, std::move(lanes), memory.buffer_bytes);
+        LUCARNE_TRY(deliver(ranks, own, delivery));
     }
     counted.reset();
     const auto at = [&](size_t rank) { return chunks.begin() + static_cast<ptrdiff_t>(first_of_rank[rank]); };
@@ -177,6 +189,34 @@ Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan
         LUCARNE_ASSIGN(chunk.sum, sum_of(chunk));
     }
     LUCARNE_TRY(refine(std::move(coarse), memory));
+    return learn_others(ranks);
+}
+
+Result<void> ChunkStore::fill(const Given& given, const GivenCubes& cubes, const MemoryPlan& memory,
+                              Ranks& ranks) {
+    const size_t first = given.first_of_rank[ranks.rank()], end = given.first_of_rank[ranks.rank() + 1];
+    LUCARNE_ASSIGN(const auto found, count_in(cubes, given.present));
+    const auto present = std::span(found).subspan(first, end - first);
+    LUCARNE_ASSIGN(auto lanes, plan_lanes(ranks, given.counts, given.first_of_rank, present));
+    std::vector<Chunk> chunks;
+    for (size_t cube = first; cube < end; ++cube) {
+        const uint64_t count = present[cube - first];
+        chunks.push_back(
+            {.key = cubes.key(cube), .first = lanes[0][cube - first].next - count, .count = count});
+    }
+    LUCARNE_TRY(deal(given.present, cubes, first, chunks, memory));
+    for (size_t i = 0; i < chunks.size(); ++i) {
+        end_ = lanes.back()[i].end;
+        chunks[i].count = end_ - chunks[i].first;
+    }
+    {
+        Delivery delivery(
+            ranks, file_, schema_, root_, [&](const Place& place) { return cubes.of(place); },
+            given.first_of_rank, std::move(lanes), memory.buffer_bytes);
+        LUCARNE_TRY(deliver(ranks, given.added, delivery));
+    }
+    std::erase_if(chunks, [](const Chunk& chunk) { return chunk.count == 0; });
+    LUCARNE_TRY(refine(std::move(chunks), memory));
     return learn_others(ranks);
 }
 

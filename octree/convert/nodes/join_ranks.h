@@ -23,4 +23,12 @@ struct RankNodes {
 Result<double> join_ranks(Ranks& ranks, const RankNodes& nodes, CacheWriter* cache, SharedOutput& output,
                           const std::filesystem::path& temp_folder);
 
+/// Marks the offset of an entry whose payload is in the cache that is updated, and stays where it is.
+inline constexpr uint64_t kStays = uint64_t{1} << 63;
+
+/// Does the same where rank 0 alone writes the cache, because it changes one in place: it asks the others for
+/// their payloads. A meeting.
+Result<void> join_at_first(Ranks& ranks, const RankNodes& nodes, CacheWriter* cache,
+                           const std::filesystem::path& temp_folder);
+
 }  // namespace lucarne::octree
