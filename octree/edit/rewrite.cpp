@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <malloc.h>
 
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
@@ -394,9 +395,13 @@ Result<void> Rewrite::write_nodes(CacheWriter* writer) {
 Result<EditReport> Rewrite::run(CacheWriter* writer) {
     const ThreadLimit threads(threads_);
     LUCARNE_TRY(plan());
+    // Freed memory goes back to the system, or the next stage's is added to it (as in a build).
     LUCARNE_TRY(deal());
+    ::malloc_trim(0);
     LUCARNE_TRY(find_surface());
+    ::malloc_trim(0);
     LUCARNE_TRY(write_nodes(writer));
+    ::malloc_trim(0);
     report_.points = change_.header.points;
     if (!writer) return report_;  // rank 0 does what is left
     SourceHeader header = change_.header;

@@ -184,6 +184,20 @@ TEST_F(AppendRankFaults, AKilledRankLeavesTheOldState) {
     }
 }
 
+TEST_F(AppendRankFaults, AKillAroundTheSwitchLeavesASoundCache) {
+    start_anew();
+    EXPECT_EQ(without_fault("--append", 3).code, 0);
+    const std::string appended = test::bytes_of(output());
+    for (const int sync : {1, 2}) {  // before the superblock is written, and behind it
+        start_anew();
+        const Outcome killed = with_fault(0, "kill-sync:" + std::to_string(sync), "--append");
+        EXPECT_NE(killed.output.find("signal 9"), std::string::npos) << killed.output;
+        EXPECT_EQ(lucarne("verify " + output()).code, 0);
+        const std::string after = test::bytes_of(output());
+        EXPECT_TRUE(sync == 1 ? after.starts_with(before_) : after == appended) << sync;
+    }
+}
+
 TEST_F(AppendRankFaults, AFullDiskOfOneRankIsTheErrorOfAllAndLeavesTheOldState) {
     for (const int rank : {0, 1}) {
         const auto writes = writes_of(rank);

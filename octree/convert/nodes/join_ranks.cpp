@@ -12,6 +12,7 @@ using Bytes = Ranks::Bytes;
 
 constexpr uint64_t kEntriesAtATime = 16384;      // 1 MiB
 constexpr uint64_t kCopied = uint64_t{8} << 20;  ///< bytes copied at a time
+constexpr uint64_t kAsked = uint64_t{1} << 20;   ///< bytes of payloads in an answer, held by both ranks
 
 enum class Wanted : uint64_t { loose, sample, entries, payloads };
 struct NodeQuestion {
@@ -157,9 +158,9 @@ Result<void> join_at_first(Ranks& ranks, const RankNodes& nodes, CacheWriter* ca
         LUCARNE_ASSIGN(Assembler top, Assembler::create(*cache, nodes.loader, nodes.limits, temp_folder));
         const auto fetch = [&](size_t rank, uint64_t from, uint64_t bytes) -> Result<uint64_t> {
             const uint64_t to = cache->bytes(), end = from + bytes;
-            for (; from < end; from += std::min(kCopied, end - from)) {
+            for (; from < end; from += std::min(kAsked, end - from)) {
                 LUCARNE_ASSIGN(const auto payloads,
-                               ask(ranks, rank, {Wanted::payloads, from, std::min(kCopied, end - from)}));
+                               ask(ranks, rank, {Wanted::payloads, from, std::min(kAsked, end - from)}));
                 LUCARNE_TRY(cache->append(payloads));
             }
             return to;
