@@ -45,6 +45,19 @@ uint64_t free_bytes(const path& folder) {
     return unknown ? std::numeric_limits<uint64_t>::max() : space.available;
 }
 
+/// Returns the deepest folder that contains all scans.
+path common_folder(const KeptCache::Scans& scans) {
+    path common = absolute(scans.front().path).parent_path();
+    for (const auto& scan : scans) {
+        const path folder = absolute(scan.path).parent_path();
+        const auto differs = std::mismatch(common.begin(), common.end(), folder.begin(), folder.end()).first;
+        path shared;
+        for (auto part = common.begin(); part != differs; ++part) shared /= *part;
+        common = std::move(shared);
+    }
+    return common;
+}
+
 bool same_file_name(const std::string& a, const std::string& b) {
     return path(a).filename() == path(b).filename();
 }
@@ -55,10 +68,17 @@ KeptCache::KeptCache(const Scans& scans, std::string options) : scans_(scans), o
     const path first = absolute(scans_.front().path);
     const uint64_t hash = hash_of(scans_);
     const std::string name = first.filename().string();
-    beside_ = first.parent_path() /
-              (scans_.size() == 1
-                   ? name + ".luc"
-                   : fmt::format("{}+{}-{:08x}.luc", name, scans_.size() - 1, static_cast<uint32_t>(hash)));
+    const auto short_hash = static_cast<uint32_t>(hash);
+    if (scans_.size() == 1) {
+        beside_ = first.parent_path() / (name + ".luc");
+    } else {
+        among_ = first.parent_path() / fmt::format("{}+{}-{:08x}.luc", name, scans_.size() - 1, short_hash);
+        const path folder = common_folder(scans_);
+        beside_ =
+            folder.has_filename()
+                ? folder.parent_path() / fmt::format("{}-{:08x}.luc", folder.filename().string(), short_hash)
+                : among_;
+    }
     if (const path folder = user_folder("XDG_CACHE_HOME", ".cache"); !folder.empty())
         in_folder_ = folder / fmt::format("{}-{:016x}.luc", name.substr(0, 100), hash);
 }
@@ -75,7 +95,7 @@ bool KeptCache::made_of(const octree::NodeSource& cache, bool same_state) const 
 }
 
 std::shared_ptr<const octree::NodeSource> KeptCache::find() const {
-    for (const path& file : {beside_, in_folder_}) {
+    for (const path& file : {beside_, in_folder_, among_}) {
         if (file.empty()) continue;
         auto input = InputFile::open_shared(file);
         if (!input || !octree::is_cache(**input)) continue;

@@ -12,9 +12,10 @@
 
 namespace lucarne::viewer {
 
-/// The cache of directly opened scans that is kept for the next time. It is placed beside the first scan
-/// (`a.las.luc`; for several scans `a.las+2-<hash>.luc`). If that folder cannot be written, it is placed in
-/// the user's cache folder ($XDG_CACHE_HOME/lucarne, ~/.cache/lucarne) under a name derived from the scans'
+/// The cache of directly opened scans that is kept for the next time. It is placed beside the scan
+/// (`a.las.luc`); that of several scans beside the folder that contains them all (`tiles-<hash>.luc`), since
+/// among them it would be taken for one of them. If that place cannot be written, it is placed in the user's
+/// cache folder ($XDG_CACHE_HOME/lucarne, ~/.cache/lucarne) under a name derived from the scans'
 /// full paths.
 class KeptCache {
  public:
@@ -39,6 +40,8 @@ class KeptCache {
     Scans scans_;
     std::string options_;
     std::filesystem::path beside_, in_folder_;  ///< the latter is empty if the user has no cache folder
+    /// Where earlier versions placed the cache of several scans; empty for one. It is read, not written.
+    std::filesystem::path among_;
 };
 
 }  // namespace lucarne::viewer

@@ -8,9 +8,9 @@ namespace lucarne::viewer {
 
 inline constexpr double kMostBrightness = 4;
 
-/// Estimates how bright a scan is, and the colour of the light in which its points were photographed: the root
-/// mean square of each component of their linear colours ("shades of grey", Finlayson & Trezzi 2004, with
-/// p = 2). A part of what this finds is paint, so only a share of it (as a power) counts as cast.
+/// Estimates how bright a scan is, and the colour of the light in which its points were photographed: the
+/// root mean square of each component of their linear colours ("shades of grey", Finlayson & Trezzi 2004,
+/// with p = 2). A part of what this finds is paint, so only a share of it (as a power) counts as cast.
 class ColourCast {
  public:
     /// Adds the colour of a point, if it has one. `white` is the largest value of its components

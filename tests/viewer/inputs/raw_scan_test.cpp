@@ -224,6 +224,22 @@ TEST(KeptCache, TwoScansOfOneNameInTwoFoldersHaveTwoPlaces) {
     EXPECT_EQ(place_a->parent_path(), folder.path() / "lucarne");
 }
 
+TEST(KeptCache, OfSeveralScansIsBesideTheFolderThatContainsThemAll) {
+    const test::TemporaryFolder folder;
+    const std::string tiles = folder / "tiles";
+    std::filesystem::create_directories(tiles + "/east");
+    io::ScanInfo a, b, c;
+    a.path = tiles + "/a.las", b.path = tiles + "/b.las", c.path = tiles + "/east/c.las";
+    const auto flat = KeptCache({a, b}).place(0), deep = KeptCache({a, b, c}).place(0);
+    ASSERT_TRUE(flat && deep);
+    for (const auto& place : {*flat, *deep}) {
+        EXPECT_EQ(place.parent_path(), folder.path());
+        EXPECT_THAT(place.filename().string(), testing::StartsWith("tiles-"));
+    }
+    EXPECT_NE(*flat, *deep) << "of other scans";
+    EXPECT_EQ(KeptCache({b, a}).place(0)->parent_path(), folder.path());
+}
+
 TEST(KeptCache, IsNotPutOnADiskWithoutRoomForIt) {
     const test::TemporaryFolder folder;
     io::ScanInfo scan;
