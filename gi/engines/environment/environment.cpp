@@ -160,7 +160,7 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
             const float spacing = kCoarser * static_cast<float>(s[kCacheSpacing]);
             LUCARNE_ASSIGN(const auto seen, buffers_.seen());
             secondaries_.choose(tree, seen,
-                                [&](size_t slot) { return is_fine(tree, slot, frame.camera, spacing); });
+                                [&](size_t slot) { return shares_light(tree, slot, frame.camera, spacing); });
         }
     }
     caches_.clear();

@@ -2,11 +2,17 @@
 
 #include <algorithm>
 
+#include "gi/engines/environment/primaries.h"
 #include "gi/gather/gather_point.h"
 #include "gi/shared/surfel.h"
 
 namespace lucarne::gi::environment {
 namespace {
+
+/// Slots may be thick for a share of the size up to which their parts have one light. The upper side of a
+/// pipe below a ceiling is dark, and that of the ceiling is lit by the sky: where both were one back, rooms
+/// shone blue beside pipes and beams.
+constexpr float kThickest = 1.0f / 6;
 
 /// Calls body(child side, weight) for those sides below a side of which it is the mean.
 template <class Body>
@@ -100,6 +106,12 @@ std::vector<glm::vec3> Secondaries::propagate(const SurfelTree& tree,
                 });
     });
     return light;
+}
+
+bool shares_light(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing) {
+    const WideNode& node = tree.nodes[slot / 8];
+    const float bound = std::max(node.bound[slot % 8], node.thickness[slot % 8] / kThickest);
+    return is_fine(tree, slot, camera, spacing * node.bound[slot % 8] / bound);
 }
 
 }  // namespace lucarne::gi::environment

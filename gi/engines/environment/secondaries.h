@@ -7,6 +7,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "gi/host_frame.h"
 #include "gi/tree/surfel_tree.h"
 
 namespace lucarne::gi::environment {
@@ -41,5 +42,9 @@ class Secondaries {
     std::vector<uint32_t> sides_;
     size_t seen_ = 0;
 };
+
+/// Returns whether all parts of a slot may have the light of one of them: the slot is_fine() at this spacing,
+/// and its surfels lie so near its plane that none hides light from another.
+bool shares_light(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing);
 
 }  // namespace lucarne::gi::environment

@@ -55,6 +55,29 @@ TEST(Secondaries, PartsOfWhatIsFineShareItsLight) {
     EXPECT_EQ(secondaries.propagate(tree, known)[leaves.front()], glm::vec3(3, 2, 1));
 }
 
+// As a pipe below a ceiling, whose upper side is dark while that of the ceiling is lit by the sky.
+TEST(Secondaries, SheetsAboveEachOtherDoNotShareLight) {
+    constexpr float kGap = 0.15f, kAllowed = 0.6f;
+    auto surfels = flat::square(64, 1);
+    for (FlatSurfel s : flat::square(64, 1)) {
+        s.z = kGap;
+        surfels.push_back(s);
+    }
+    const SurfelTree tree = build_tree(surfels);
+    const CameraView camera = scenes::look({.5f, .5f, 30}, {.5f, .5f, 0}, 0.5f, 256);
+    const float spacing = kAllowed / pixel_height(camera, 30);
+    Secondaries secondaries;
+    secondaries.choose(tree, leaf_sides(tree, 0),
+                       [&](size_t slot) { return shares_light(tree, slot, camera, spacing); });
+    EXPECT_LT(secondaries.sides().size(), surfels.size() / 8);
+    std::vector<glm::vec3> known;
+    for (const uint32_t side : secondaries.sides())
+        known.emplace_back(place_of(tree, surfels, side).position.z > kGap / 2 ? 1.0f : 0.0f);
+    const auto light = secondaries.propagate(tree, known);
+    for (const uint32_t side : leaf_sides(tree, 0))
+        ASSERT_EQ(light[side].x, surfels[tree.surfels[side / 2]].z > kGap / 2 ? 1 : 0);
+}
+
 TEST(Secondaries, EvenLightStaysEvenWhereverItIsPropagated) {
     const auto surfels = flat::noisy_room(4000);
     const SurfelTree tree = build_tree(surfels);
