@@ -138,9 +138,11 @@ TEST_F(RawScan, InAFolderThatCannotBeWrittenItsCacheGoesToTheUsersOwn) {
 }
 
 TEST_F(RawScan, SeveralAreOnePicture) {
-    const std::string other = folder_ / "b.las";
+    const std::string tiles = folder_ / "tiles", one = tiles + "/a.las", other = tiles + "/b.las";
+    std::filesystem::create_directory(tiles);
+    std::filesystem::copy(scan_, one);
     generate(other, 3);
-    const std::string both = "render " + scan_ + " " + other + kSmall + "-o " + picture_;
+    const std::string both = "render " + one + " " + other + kSmall + "-o " + picture_;
     const Outcome first = lucarne(both);
     EXPECT_EQ(first.code, 0) << first.output;
     const std::string together = bytes_of(picture_);

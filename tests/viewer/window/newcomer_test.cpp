@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/io/io_testing.h"
 #include "tests/viewer/window/places.h"
 #include "tests/viewer/window/window_fixture.h"
 
@@ -157,9 +158,8 @@ class NewcomerWithAMouse : public ManagedWindow {
         ManagedWindow::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
         room_ = folder_ / "room.las";
-        const Outcome made = lucarne("generate nave --points 60k -o " + room_);
-        ASSERT_EQ(made.code, 0) << made.output;
     }
+    void walk();
     /// Starts with the scan as the only argument, and waits for the window's first complete picture.
     std::optional<io::Image8> open() {
         start_with(room_);
@@ -199,7 +199,7 @@ class NewcomerWithAMouse : public ManagedWindow {
     std::string room_, window_;
 };
 
-TEST_F(NewcomerWithAMouse, SeesARoomInEveningLightMeasuresItSavesAPictureAndFindsItAllAgainInSixSteps) {
+void NewcomerWithAMouse::walk() {
     const auto colours = open();  // step 1
     ASSERT_TRUE(colours) << log();
 
@@ -244,6 +244,20 @@ TEST_F(NewcomerWithAMouse, SeesARoomInEveningLightMeasuresItSavesAPictureAndFind
     quit();
     EXPECT_EQ(nlohmann::json::parse(bytes_of(projects().front())).at("measurements"),
               kept.at("measurements"));
+}
+
+TEST_F(NewcomerWithAMouse, SeesARoomInEveningLightMeasuresItSavesAPictureAndFindsItAllAgainInSixSteps) {
+    const Outcome made = lucarne("generate nave --points 60k -o " + room_);
+    ASSERT_EQ(made.code, 0) << made.output;
+    walk();
+}
+
+TEST_F(NewcomerWithAMouse, DoesTheSameInARealRoom) {
+    const std::filesystem::path loft = io::testing::shared_data() / "interiors/loft.laz";
+    if (!std::filesystem::exists(loft)) GTEST_SKIP() << "the shared data is not here";
+    room_ = folder_ / "room.laz";
+    std::filesystem::copy(loft, room_);
+    walk();
 }
 
 }  // namespace
