@@ -38,10 +38,13 @@ Result<void> check_same(Ranks& ranks, const std::string& what, const std::string
     return {};
 }
 
-std::vector<size_t> divide(std::span<const uint64_t> weights, size_t ranks) {
-    const auto total = std::accumulate(weights.begin(), weights.end(), 0.0L);
+std::vector<size_t> divide(std::span<const uint64_t> weights, size_t ranks, uint64_t first_has) {
+    const auto sum = std::accumulate(weights.begin(), weights.end(), 0.0L);
+    // With more than this, rank 0 gets nothing, and the others share evenly.
+    const long double most = ranks > 1 ? sum / static_cast<long double>(ranks - 1) : 0;
+    long double before = std::min(static_cast<long double>(first_has), most);
+    const long double total = before + sum;
     std::vector<size_t> first{0};
-    long double before = 0;
     for (size_t piece = 0; piece < weights.size(); ++piece) {
         // A piece goes to the rank in whose share its middle lies.
         const long double middle = before + static_cast<long double>(weights[piece]) / 2;

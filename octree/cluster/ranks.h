@@ -76,8 +76,8 @@ Result<void> meet(Ranks& ranks);
 Result<void> check_same(Ranks& ranks, const std::string& what, const std::string& text);
 
 /// Divides consecutive pieces among ranks, so that each gets about the same weight. Returns the first piece
-/// of each rank, and their number.
-std::vector<size_t> divide(std::span<const uint64_t> weights, size_t ranks);
+/// of each rank, and their number. `first_has`: weight of other work that rank 0 does alone; it gets less.
+std::vector<size_t> divide(std::span<const uint64_t> weights, size_t ranks, uint64_t first_has = 0);
 
 /// Errors as bytes for other ranks.
 Ranks::Bytes encode_error(const Error& error);

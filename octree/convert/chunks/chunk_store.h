@@ -56,9 +56,10 @@ class ChunkStore {
     /// Sorts the points of all ranks into chunks, each of which goes to one rank: the same chunks as one
     /// process makes of all inputs. A meeting of the ranks. `own`: the points that this rank reads; the ranks
     /// read consecutive parts of the inputs. `points`: of all ranks. `counted`: as above, of this rank's
-    /// points; all ranks have it or none. `resumable`: the store will be saved.
+    /// points; all ranks have it or none. `resumable`: the store will be saved. `first_has`: the work that
+    /// rank 0 does alone, in points; its chunks have fewer.
     Result<void> fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
-                      bool resumable, std::optional<CountGrid> counted);
+                      bool resumable, std::optional<CountGrid> counted, uint64_t first_has = 0);
     /// What this rank contributes to chunks that are given.
     struct Given {
         Pass present;  ///< points that the rank gets itself; those in cubes of other ranks are left out

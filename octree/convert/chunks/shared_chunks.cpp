@@ -157,7 +157,7 @@ Result<void> deliver(Ranks& ranks, const Pass& pass, Delivery& delivery) {
 }  // namespace
 
 Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan& memory, Ranks& ranks,
-                              bool resumable, std::optional<CountGrid> counted) {
+                              bool resumable, std::optional<CountGrid> counted, uint64_t first_has) {
     if (!counted) {
         LUCARNE_ASSIGN(counted, count(own, {}, points, memory));
     }
@@ -170,7 +170,7 @@ Result<void> ChunkStore::fill(const Pass& own, uint64_t points, const MemoryPlan
     std::vector<uint64_t> weights;
     for (const Chunk& chunk : chunks) weights.push_back(chunk.count);
     if (std::accumulate(weights.begin(), weights.end(), uint64_t{0}) != points) return inputs_changed();
-    const auto first_of_rank = divide(weights, ranks.count());
+    const auto first_of_rank = divide(weights, ranks.count(), first_has);
     LUCARNE_ASSIGN(auto lanes, plan_lanes(ranks, counts, first_of_rank));
     {
         Delivery delivery(

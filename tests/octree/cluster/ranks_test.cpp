@@ -62,5 +62,14 @@ TEST(Ranks, GetAboutEqualWeights) {
     }
 }
 
+TEST(Ranks, TheFirstGetsLessWhereItHasOtherWork) {
+    const std::vector<uint64_t> weights(12, 10);
+    EXPECT_EQ(divide(weights, 2), (std::vector<size_t>{0, 6, 12}));
+    EXPECT_EQ(divide(weights, 2, 40), (std::vector<size_t>{0, 4, 12}));
+    EXPECT_EQ(divide(weights, 3, 30), (std::vector<size_t>{0, 2, 7, 12}));
+    EXPECT_EQ(divide(weights, 3, 500), (std::vector<size_t>{0, 0, 6, 12})) << "too much for any other";
+    EXPECT_EQ(divide(weights, 1, 30), (std::vector<size_t>{0, 12}));
+}
+
 }  // namespace
 }  // namespace lucarne::octree
