@@ -162,20 +162,22 @@ TEST(AddedEnginePanel, HasAControlForEachOfItsOptions) {
             if (model.view.method.settings.get(*option) != before.get(*option))
                 changed.insert(std::string(option->key));
     };
-    // Click at all heights: a click on a control changes something, and another click below chooses from an
-    // open list.
-    for (float y = 20; y < 500; y += 6) {
+    // Click at all heights, on the left where boxes are ticked, and on the right where fields are: a click on
+    // a control changes something, and another click below chooses from an open list.
+    const auto click_at = [&](float x, float y) {
         Panel panel;
         ViewModel model(10);
         model.view.method.engine = "paint";
         ASSERT_TRUE(model.view.choose_preset("interactive"));
         const gi::EngineSettings before = model.view.method.settings;
-        for (const ImVec2 at : {ImVec2(60, y), ImVec2(60, y + 40)}) {
+        for (const ImVec2 at : {ImVec2(x, y), ImVec2(x, y + 40)}) {
             panel.click(model, at);
             if (model.view.method.engine == "paint" && model.view.preset == "interactive")
                 look(model, before);
         }
-    }
+    };
+    for (float y = 20; y < 500; y += 6)
+        for (const float x : {60.0f, 140.0f, 200.0f}) click_at(x, y);
     for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky", "mean_scale"})
         EXPECT_THAT(changed, Contains(key));
     EXPECT_FALSE(changed.contains("vpls")) << "another engine's";

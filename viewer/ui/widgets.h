@@ -22,6 +22,7 @@ class LeftLabel {
         ImGui::SameLine();
         ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(),
                                       ImGui::GetStyle().WindowPadding.x + column * ImGui::GetFontSize()));
+        ImGui::SetNextItemWidth(-1.5f * ImGui::GetFontSize());  // leaves room for "?"
     }
     /// The widget's own label, which is not shown.
     operator const char*() const { return id_.c_str(); }
