@@ -31,13 +31,13 @@ void FileOpener::choose_files() {
 /// Lets the desktop's dialog answer where missing scans are.
 void FileOpener::choose_folder() {
     MissingScans& question = model_.missing_scans;
-    const bool starts = std::exchange(question.browses, false) && !folder_dialog_.open();
-    const std::vector<std::string> programs = NativeDialog::programs();
-    const bool started =
-        starts && std::ranges::any_of(programs, [&](const std::string& program) {
+    if (std::exchange(question.browses, false) && !folder_dialog_.open()) {
+        const std::vector<std::string> programs = NativeDialog::programs();
+        const bool started = std::ranges::any_of(programs, [&](const std::string& program) {
             return folder_dialog_.start(NativeDialog::folder_command(program, question.folder));
         });
-    if (starts && !started) question.problem = "No file dialog (zenity or kdialog) is installed.";
+        if (!started) question.problem = "No file dialog (zenity or kdialog) is installed.";
+    }
     const auto chosen = folder_dialog_.poll();
     if (chosen && !chosen->empty() && question.shown) question.answer = question.folder = chosen->front();
 }

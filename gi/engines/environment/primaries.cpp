@@ -172,9 +172,9 @@ SidePlace place_of(const SurfelTree& tree, std::span<const FlatSurfel> surfels, 
             .size = size};
 }
 
-bool is_fine(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing) {
+bool is_fine(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing, float least) {
     const float pixel = pixel_height(camera, depth_of(tree, slot, camera));
-    return kRadiiApart * tree.nodes[slot / 8].bound[slot % 8] <= spacing * pixel;
+    return kRadiiApart * std::max(tree.nodes[slot / 8].bound[slot % 8], least) <= spacing * pixel;
 }
 
 std::vector<SidePlace> primary_places(const SurfelTree& tree, std::span<const FlatSurfel> surfels,

@@ -26,7 +26,8 @@ SidePlace place_of(const SurfelTree& tree, std::span<const FlatSurfel> surfels, 
 
 /// Whether what a slot stands for is no larger in the picture of a camera than the distance of points that
 /// are so many pixels apart. What lies beside the picture counts likewise, by its distance.
-bool is_fine(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing);
+/// `least`: the slot counts as if its bound had at least this radius.
+bool is_fine(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing, float least = 0);
 
 /// Returns the primary visible points (Harada 2014, section 3.4): those nodes of one surface that are just no
 /// larger than `spacing` pixels, as far as the picture shows them, without those for which another is near

@@ -109,9 +109,7 @@ std::vector<glm::vec3> Secondaries::propagate(const SurfelTree& tree,
 }
 
 bool shares_light(const SurfelTree& tree, size_t slot, const CameraView& camera, float spacing) {
-    const WideNode& node = tree.nodes[slot / 8];
-    const float bound = std::max(node.bound[slot % 8], node.thickness[slot % 8] / kThickest);
-    return is_fine(tree, slot, camera, spacing * node.bound[slot % 8] / bound);
+    return is_fine(tree, slot, camera, spacing, tree.nodes[slot / 8].thickness[slot % 8] / kThickest);
 }
 
 }  // namespace lucarne::gi::environment
