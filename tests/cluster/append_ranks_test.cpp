@@ -9,7 +9,7 @@
 
 #include "tests/cluster/rank_faults.h"
 #include "tests/cluster/ranks.h"
-#include "tests/cluster/silent_scan.h"
+#include "tests/cluster/scans.h"
 
 namespace lucarne {
 namespace {
@@ -24,27 +24,11 @@ class SameBytesAppended : public testing::Test {
  protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<test::TemporaryFolder>();
-        const auto generate = [](const std::string& scene, const std::string& points, const std::string& name,
-                                 const std::string& more = {}) {
-            const Outcome made =
-                lucarne("generate " + scene + " --points " + points + " -o " + *folder_ / name + " " + more);
-            ASSERT_EQ(made.code, 0) << made.output;
-        };
-        generate("nave", "150k", "nave.laz", "--stations 2");
-        generate("nave", "40k", "again.laz", "--stations 1 --seed 7");
-        generate("survey", "90k", "survey.las");
-        generate("two-rooms", "5k", "rooms.las", "--normals");
-        generate("cornell", "3k", "cornell.las");
-        generate("statue", "700", "statue.ply");
-        std::ofstream rows(*folder_ / "rows.xyz");
-        for (int i = 0; i < 4000; ++i)
-            rows << i % 80 * .11 << ' ' << i / 80 * .13 << ' ' << i % 7 * .01 << '\n';
+        test::make_scans(*folder_);
+        test::generate(*folder_, "nave", "150k", "nave.laz", "--stations 2");
+        test::generate(*folder_, "nave", "40k", "again.laz", "--stations 1 --seed 7");
         std::ofstream few(*folder_ / "few.xyz");
         for (int i = 0; i < 200; ++i) few << i * .01 << ' ' << i % 7 * .1 << " 0\n";
-        // A place with so many points that it fills chunks of its own.
-        std::ofstream heap(*folder_ / "heap.xyz");
-        for (int i = 0; i < 70000; ++i) heap << "1 2 3\n";
-        for (int i = 0; i < 3000; ++i) heap << i % 60 * .1 << ' ' << i / 60 * .1 << " 0\n";
     }
     static void TearDownTestSuite() { folder_.reset(); }
     void SetUp() override { LUCARNE_NEEDS_RANKS(); }
