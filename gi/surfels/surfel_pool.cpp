@@ -44,7 +44,7 @@ Result<SurfelPool> SurfelPool::create(Device& device, uint32_t capacity) {
     LUCARNE_ASSIGN(pool.buffer_,
                    device.texels(size_t{pages} * kPageSurfels * sizeof(PackedSurfel), "surfel pool"));
     pool.capacity_ = pages * kPageSurfels;
-    for (uint32_t page = pages; page-- > 0;) pool.free_.push_back(page);
+    pool.evict_all();
     return pool;
 }
 
@@ -82,6 +82,12 @@ void SurfelPool::evict(uint32_t node) {
     free_.insert(free_.end(), pages.rbegin(), pages.rend());
     assert(free_.size() <= capacity_ / kPageSurfels);
     resident_.erase(found);
+}
+
+void SurfelPool::evict_all() {
+    resident_.clear();
+    free_.clear();
+    for (uint32_t page = capacity_ / kPageSurfels; page-- > 0;) free_.push_back(page);
 }
 
 bool SurfelPool::holds(uint32_t node) const {

@@ -95,6 +95,7 @@ class SurfelPool {
     /// evicts nodes and tries again.
     Result<bool> load(uint32_t node, std::span<const PackedSurfel> surfels);
     void evict(uint32_t node);
+    void evict_all();
     bool holds(uint32_t node) const;
     uint32_t used() const;  ///< pages in use, in surfels
     uint32_t capacity() const;

@@ -1,12 +1,13 @@
 #include "octree/cache/cache.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "io/core/random.h"
+#include "octree/cache/checked_read.h"
 #include "octree/cache/file.h"
 #include "octree/tree/filling.h"
 
@@ -16,17 +17,6 @@ using format::Entry;
 using format::Superblock;
 
 namespace {
-
-constexpr const char* kAgain = "convert the scan again";
-
-auto damaged(const ByteSource& file, std::string why) {
-    return rejected(file.path().string(), std::move(why), kAgain);
-}
-
-/// Whether [offset, offset + bytes) lies after the superblocks and before `end`.
-bool inside(uint64_t offset, uint64_t bytes, uint64_t end) {
-    return offset >= format::kFirstPayload && offset <= end && bytes <= end - offset;
-}
 
 Result<Superblock> newest_superblock(const ByteSource& file) {
     LUCARNE_ASSIGN(const auto blocks, read_superblocks(file));
@@ -44,17 +34,6 @@ Result<Superblock> newest_superblock(const ByteSource& file) {
     return block;
 }
 
-/// Reads a range, checks it against the checksum `sum`, and appends `behind` zeros. The range must have been
-/// checked against the file's size.
-Result<std::vector<std::byte>> read_checked(const ByteSource& file, uint64_t offset, uint64_t bytes,
-                                            uint64_t sum, const std::string& what, size_t behind = 0) {
-    std::vector<std::byte> data(bytes + behind);
-    const std::span read(data.data(), bytes);
-    LUCARNE_TRY(file.read_at(offset, read));
-    if (format::checksum(read) != sum) return damaged(file, what + " does not match its checksum");
-    return data;
-}
-
 }  // namespace
 
 Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const ByteSource& file) {
@@ -66,56 +45,78 @@ Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const ByteSour
                       format::decode(all.last<format::kSuperblockBytes>())};
 }
 
-Result<std::unique_ptr<CacheFile>> CacheFile::open(std::shared_ptr<const ByteSource> file) {
+Result<std::unique_ptr<CacheFile>> CacheFile::open(std::shared_ptr<const ByteSource> file,
+                                                   uint64_t directory_memory) {
     auto newest = newest_superblock(*file);
     if (!newest && !is_cache(*file))
         return rejected(file->path().string(), "is not a Lucarne cache",
                         "if it is a scan, convert it first: lucarne convert SCAN -o CACHE.luc");
     LUCARNE_ASSIGN(const Superblock block, std::move(newest));
     std::unique_ptr<CacheFile> cache(new CacheFile(std::move(file), block));
+    LUCARNE_TRY(cache->read_header());
+    const uint64_t nodes = block.directory_bytes / format::kEntryBytes;
+    if (nodes * kNodeBytes > directory_memory && cache->header_.directory_pages) {
+        LUCARNE_ASSIGN(cache->pages_, PagedDirectory::open(*cache->file_, block, cache->header_,
+                                                           cache->reader_, directory_memory));
+        return cache;
+    }
     LUCARNE_TRY(cache->read_directory());
     LUCARNE_TRY(cache->check_structure());
-    LUCARNE_TRY(cache->check_payloads());
+    std::vector<FileRange> payloads;
+    payloads.reserve(nodes + 4);
+    for (size_t i = 0; i < cache->nodes_.size(); ++i)
+        if (const uint64_t bytes = cache->nodes_[i].payload_bytes)
+            payloads.push_back({cache->payloads_[i].offset, cache->payloads_[i].offset + bytes});
+    LUCARNE_TRY(cache->check_overlaps(std::move(payloads)));
     return cache;
 }
 
-Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path) {
+Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path,
+                                                   uint64_t directory_memory) {
     LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
-    return open(std::move(file));
+    return open(std::move(file), directory_memory);
 }
 
-Result<void> CacheFile::read_directory() {
+Result<void> CacheFile::read_header() {
     LUCARNE_ASSIGN(const auto metadata, read_checked(*file_, block_.metadata_offset, block_.metadata_bytes,
                                                      block_.metadata_checksum, "its metadata"));
     LUCARNE_ASSIGN(header_,
                    parse_metadata(file_->path().string(),
                                   {reinterpret_cast<const char*>(metadata.data()), metadata.size()}));
+    LUCARNE_ASSIGN(reader_, PayloadReader::create(file_->path().string(), header_));
+    if (!header_.filling || header_.filling->points == 0) return {};
+    const FillingSection& filling = *header_.filling;
+    const uint64_t records = filling.points * filling.schema.stride;
+    if (records > codec::kMostRecordBytes ||
+        (filling.codec == format::kCodecRaw ? filling.bytes != records : filling.bytes >= records))
+        return damaged(*file_, "it states a wrong size of its synthetic surfels");
+    if (!inside(filling.offset, filling.bytes, block_.file_bytes))
+        return damaged(*file_, "its synthetic surfels lie outside the file");
+    return {};
+}
+
+Result<void> CacheFile::read_directory() {
     LUCARNE_ASSIGN(const auto bytes, read_checked(*file_, block_.directory_offset, block_.directory_bytes,
                                                   block_.directory_checksum, "its directory"));
+    LUCARNE_TRY(check_pages(bytes));
+    const EntryCheck check(*file_, block_, header_, reader_);
     const size_t count = bytes.size() / format::kEntryBytes;
     nodes_.reserve(count);
     payloads_.reserve(count);
-    for (size_t i = 0; i < count; ++i) {
-        const Entry entry = format::load_entry(&bytes[i * format::kEntryBytes]);
-        if (entry.key.level > kMostLevel ||
-            ((entry.key.x | entry.key.y | entry.key.z) >> entry.key.level) != 0)
-            return damaged(*file_, fmt::format("node {} lies outside the root cube", i));
-        if (entry.codec > format::kCodecColumns)
-            return damaged(*file_, fmt::format("node {} uses the unknown codec {}", i, entry.codec));
-        if (!std::all_of(entry.area_floor.begin(), entry.area_floor.end(),
-                         [](float v) { return std::isfinite(v) && v >= 0; }))
-            return damaged(*file_, fmt::format("node {} has an impossible area floor", i));
-        nodes_.push_back({.key = entry.key,
-                          .child_mask = entry.child_mask,
-                          .count = entry.count,
-                          .subtree_count = entry.subtree_count,
-                          .payload_bytes = entry.payload_bytes,
-                          .area_floor = entry.area_floor});
-        if (entry.layout > header_.layouts.size())
-            return damaged(*file_, fmt::format("node {} has the unknown layout {}", i, entry.layout));
-        payloads_.push_back({entry.payload_offset, entry.checksum, entry.codec, entry.layout});
+    for (uint32_t i = 0; i < count; ++i) {
+        LUCARNE_ASSIGN(const auto node, check.load(i, &bytes[i * format::kEntryBytes]));
+        nodes_.push_back(node.info);
+        payloads_.push_back(node.payload);
     }
-    LUCARNE_ASSIGN(reader_, PayloadReader::create(file_->path().string(), header_));
+    return {};
+}
+
+/// Checks that the directory's pages, if it has any, are those of its entries.
+Result<void> CacheFile::check_pages(std::span<const std::byte> directory) const {
+    if (!header_.directory_pages) return {};
+    LUCARNE_ASSIGN(const auto stored, read_pages(*file_, block_, *header_.directory_pages));
+    if (stored != pages_of(directory, header_.directory_pages->nodes))
+        return damaged(*file_, "its directory and the pages of it differ");
     return {};
 }
 
@@ -150,78 +151,30 @@ Result<void> CacheFile::check_structure() {
     return {};
 }
 
-Result<void> CacheFile::check_payloads() {
-    std::vector<std::pair<uint64_t, uint64_t>> ranges;  // begin, end
-    ranges.reserve(nodes_.size() + 2);
-    ranges.emplace_back(block_.directory_offset, block_.directory_offset + block_.directory_bytes);
-    ranges.emplace_back(block_.metadata_offset, block_.metadata_offset + block_.metadata_bytes);
-    if (header_.filling && header_.filling->points > 0) {
-        const FillingSection& filling = *header_.filling;
-        const uint64_t records = filling.points * filling.schema.stride;
-        if (records > codec::kMostRecordBytes ||
-            (filling.codec == format::kCodecRaw ? filling.bytes != records : filling.bytes >= records))
-            return damaged(*file_, "it states a wrong size of its synthetic surfels");
-        if (!inside(filling.offset, filling.bytes, block_.file_bytes))
-            return damaged(*file_, "its synthetic surfels lie outside the file");
-        ranges.emplace_back(filling.offset, filling.offset + filling.bytes);
-    }
-    for (size_t i = 0; i < nodes_.size(); ++i) {
-        const uint64_t bytes = nodes_[i].payload_bytes;
-        const uint64_t records = uint64_t{nodes_[i].count} * reader_.stride(payloads_[i].layout);
-        const bool fits = payloads_[i].codec == format::kCodecRaw
-                              ? bytes == records
-                              : bytes < records && records <= codec::kMostRecordBytes;
-        if (!fits) return damaged(*file_, fmt::format("node {} states a wrong size of its points", i));
-        if (!inside(payloads_[i].offset, bytes, block_.file_bytes))
-            return damaged(*file_, fmt::format("the points of node {} lie outside the file", i));
-        if (bytes) ranges.emplace_back(payloads_[i].offset, payloads_[i].offset + bytes);
-    }
-    std::sort(ranges.begin(), ranges.end());
+Result<void> CacheFile::check_overlaps(std::vector<FileRange> ranges) const {
+    const auto add = [&](uint64_t offset, uint64_t bytes) { ranges.push_back({offset, offset + bytes}); };
+    add(block_.directory_offset, block_.directory_bytes);
+    add(block_.metadata_offset, block_.metadata_bytes);
+    if (const auto& pages = header_.directory_pages)
+        add(pages->offset, pages_bytes(block_.directory_bytes / format::kEntryBytes, pages->nodes));
+    if (header_.filling && header_.filling->points > 0) add(header_.filling->offset, header_.filling->bytes);
+    std::ranges::sort(ranges);
     for (size_t i = 1; i < ranges.size(); ++i)
-        if (ranges[i].first < ranges[i - 1].second) return damaged(*file_, "parts of it overlap");
+        if (ranges[i].begin < ranges[i - 1].end) return damaged(*file_, "parts of it overlap");
     return {};
 }
 
-Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
-                              const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride) {
-    const bool raw = payload.codec == format::kCodecRaw;
-    LUCARNE_ASSIGN(auto bytes,
-                   read_checked(file, payload.offset, info.payload_bytes, payload.checksum,
-                                node == kNoNode ? "its synthetic surfels" : fmt::format("node {}", node),
-                                raw ? 0 : codec::kReadAhead));
-    if (raw) return NodeData{info.count, std::move(bytes)};
-    NodeData data{info.count, std::vector<std::byte>(size_t{info.count} * stride)};
-    if (!decoders.decode(std::span(bytes).first(info.payload_bytes), data.records))
-        return damaged(file, node == kNoNode ? "its synthetic surfels do not decode"
-                                             : fmt::format("the points of node {} do not decode", node));
-    return data;
-}
-
-Result<PayloadReader> PayloadReader::create(const std::string& name, const SourceHeader& header) {
-    PayloadReader reader;
-    reader.layouts_.push_back(
-        {header.schema.stride, std::make_unique<codec::DecoderPool>(header.schema), {}});
-    for (const auto& layout : header.layouts) {
-        if (!RecordMap::fits(layout, header.schema))
-            return rejected(name, "it has a layout that does not fit into its schema", kAgain);
-        reader.layouts_.push_back(
-            {layout.stride, std::make_unique<codec::DecoderPool>(layout), RecordMap(layout, header.schema)});
-    }
-    return reader;
-}
-
-Result<NodeData> PayloadReader::load(const ByteSource& file, uint32_t node, const NodeInfo& info,
-                                     const StoredPayload& payload) const {
-    const Layout& layout = layouts_[payload.layout];
-    LUCARNE_ASSIGN(NodeData data, load_payload(file, node, info, payload, *layout.decoders, layout.stride));
-    if (!layout.to_schema) return data;
-    NodeData converted{data.count, {}};
-    layout.to_schema->convert(data.records.data(), data.count, converted.records);
-    return converted;
+Result<FileRange> CacheFile::payload(uint32_t node) const {
+    if (!pages_)
+        return FileRange{payloads_[node].offset, payloads_[node].offset + nodes_[node].payload_bytes};
+    LUCARNE_ASSIGN(const CheckedNode found, pages_->find(node));
+    return FileRange{found.payload.offset, found.payload.offset + found.info.payload_bytes};
 }
 
 Result<NodeData> CacheFile::load(uint32_t node) const {
-    return reader_.load(*file_, node, nodes_[node], payloads_[node]);
+    if (!pages_) return reader_.load(*file_, node, nodes_[node], payloads_[node]);
+    LUCARNE_ASSIGN(const CheckedNode found, pages_->find(node));
+    return reader_.load(*file_, node, found.info, found.payload);
 }
 
 std::optional<SourceIdentity> CacheFile::identity() const {
@@ -246,6 +199,7 @@ Result<std::vector<Filling>> CacheFile::fillings() const {
 }
 
 Entry CacheFile::entry(uint32_t node) const {
+    assert(!pages_);
     const NodeInfo& info = nodes_[node];
     const StoredPayload& payload = payloads_[node];
     return {.key = info.key,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,57 +9,37 @@
 #include <vector>
 
 #include "io/files/file.h"
+#include "octree/cache/cache.h"
 #include "octree/cache/format.h"
 #include "octree/cache/metadata.h"
-#include "octree/cache/record_map.h"
-#include "octree/codec/decoder_pool.h"
+#include "octree/cache/paged_directory.h"
+#include "octree/cache/payload.h"
 
 namespace lucarne::octree {
 
 /// Returns both superblocks of a file; a damaged one is empty.
 Result<std::array<std::optional<format::Superblock>, 2>> read_superblocks(const ByteSource& file);
 
-/// Where a node's points are stored, and how.
-struct StoredPayload {
-    uint64_t offset = 0, checksum = 0;
-    uint8_t codec = format::kCodecRaw, layout = 0;
-};
-/// Reads, checks and decodes a node's points (kNoNode: synthetic surfels, which errors call so), in the
-/// layout in which they are stored. The node's sizes must have been checked against the file.
-Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
-                              const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride);
-
-/// Loads payloads of any of a cache's layouts as records of its schema. Thread-safe.
-class PayloadReader {
- public:
-    /// Errors: a layout that does not fit into the schema. `name` is the cache's name in errors.
-    static Result<PayloadReader> create(const std::string& name, const SourceHeader& header);
-
-    size_t layouts() const { return layouts_.size(); }  ///< with the schema itself, which is the first
-    uint32_t stride(uint8_t layout) const { return layouts_[layout].stride; }
-    /// Loads a node; see load_payload.
-    Result<NodeData> load(const ByteSource& file, uint32_t node, const NodeInfo& info,
-                          const StoredPayload& payload) const;
-
- private:
-    struct Layout {
-        uint32_t stride = 0;
-        std::unique_ptr<codec::DecoderPool> decoders;
-        std::optional<RecordMap> to_schema;  ///< empty for the cache's own schema
-    };
-    std::vector<Layout> layouts_;
+/// Bytes [begin, end) of a file.
+struct FileRange {
+    uint64_t begin = 0, end = 0;
+    auto operator<=>(const FileRange&) const = default;
 };
 
-/// An open cache. Its directory is in memory, its points are in the file.
+/// An open cache. Its directory is in memory or, if it takes more than `directory_memory` and can be read
+/// page by page, as much of it as that. Its points are in the file.
 class CacheFile final : public NodeSource {
  public:
-    static Result<std::unique_ptr<CacheFile>> open(std::shared_ptr<const ByteSource> file);
-    static Result<std::unique_ptr<CacheFile>> open(const std::filesystem::path& path);
+    static Result<std::unique_ptr<CacheFile>> open(std::shared_ptr<const ByteSource> file,
+                                                   uint64_t directory_memory = kDirectoryMemory);
+    static Result<std::unique_ptr<CacheFile>> open(const std::filesystem::path& path,
+                                                   uint64_t directory_memory = kDirectoryMemory);
 
     const SourceHeader& header() const override { return header_; }
-    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    NodeTable nodes() const override { return pages_ ? pages_->nodes() : NodeTable(nodes_); }
+    Result<void> directory_state() const override { return pages_ ? pages_->state() : Result<void>(); }
     uint64_t directory_bytes() const override {
-        return nodes().size_bytes() + payloads_.size() * sizeof(StoredPayload);
+        return pages_ ? pages_->most_bytes() : nodes_.size() * kNodeBytes;
     }
     Result<NodeData> load(uint32_t node) const override;
     std::optional<SourceIdentity> identity() const override;
@@ -67,24 +48,32 @@ class CacheFile final : public NodeSource {
     /// Loads the records of all synthetic surfels, in the schema of header().filling; empty if there are
     /// none.
     Result<NodeData> load_filling() const;
-    /// Returns a node's directory entry.
+    /// Returns a node's directory entry. The directory must be whole in memory.
     format::Entry entry(uint32_t node) const;
+    /// Whether the directory is whole in memory.
+    bool whole() const { return !pages_; }
+    /// Returns where a node's points are stored.
+    Result<FileRange> payload(uint32_t node) const;
+    /// Checks that neither these payloads nor the cache's other parts overlap.
+    Result<void> check_overlaps(std::vector<FileRange> payloads) const;
     const ByteSource& file() const { return *file_; }
     const format::Superblock& superblock() const { return block_; }
 
  private:
     CacheFile(std::shared_ptr<const ByteSource> file, const format::Superblock& block)
         : file_(std::move(file)), block_(block) {}
+    Result<void> read_header();
     Result<void> read_directory();
     Result<void> check_structure();
-    Result<void> check_payloads();
+    Result<void> check_pages(std::span<const std::byte> directory) const;
 
     std::shared_ptr<const ByteSource> file_;
     format::Superblock block_;
     SourceHeader header_;
-    std::vector<NodeInfo> nodes_;
-    std::vector<StoredPayload> payloads_;
     PayloadReader reader_;
+    std::vector<NodeInfo> nodes_;          ///< empty if it is read page by page
+    std::vector<StoredPayload> payloads_;  ///< likewise
+    std::unique_ptr<PagedDirectory> pages_;
 };
 
 }  // namespace lucarne::octree

@@ -74,4 +74,14 @@ Entry load_entry(const std::byte* at) {
     return entry;
 }
 
+void store_page(const Page& page, std::byte* at) {
+    store(at, page.checksum);
+    store(at + 8, page.first_child);
+    store(at + 12, uint32_t{0});
+}
+
+Page load_page(const std::byte* at) {
+    return {load<uint64_t>(at), load<uint32_t>(at + 8)};
+}
+
 }  // namespace lucarne::octree::format

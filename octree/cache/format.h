@@ -59,4 +59,15 @@ struct Entry {
 void store_entry(const Entry& entry, std::byte* at);
 Entry load_entry(const std::byte* at);
 
+/// What a page of the directory needs to be read by itself.
+struct Page {
+    uint64_t checksum = 0;     ///< of the page's entries
+    uint32_t first_child = 1;  ///< number of the first node whose parent is in this page or a later one
+    bool operator==(const Page&) const = default;
+};
+inline constexpr size_t kPageBytes = 16;
+inline constexpr uint32_t kLeastPageNodes = 8, kMostPageNodes = 1 << 16;
+void store_page(const Page& page, std::byte* at);
+Page load_page(const std::byte* at);
+
 }  // namespace lucarne::octree::format

@@ -216,6 +216,15 @@ FillingSection filling_of(const json& value) {
     return filling;
 }
 
+DirectoryPages directory_pages_of(const json& value) {
+    DirectoryPages pages;
+    pages.nodes = index_of(value.at("nodes"), format::kMostPageNodes + 1);
+    require(pages.nodes >= format::kLeastPageNodes, "pages of too few nodes");
+    pages.offset = unsigned_of(value.at("offset"));
+    pages.checksum = unsigned_of(value.at("checksum"));
+    return pages;
+}
+
 json root_json(const Cube& root) {
     json result{{"min", vector_json(root.min)}, {"size", root.size}};
     if (root.doublings)
@@ -274,6 +283,9 @@ std::string metadata_text(const SourceHeader& header) {
         if (station.saw_all) entry["saw_all"] = true;
     }
     if (header.filling) root["filling"] = filling_json(*header.filling);
+    if (const auto& pages = header.directory_pages)
+        root["directory_pages"] = {
+            {"nodes", pages->nodes}, {"offset", pages->offset}, {"checksum", pages->checksum}};
     // File names are bytes and not always UTF-8. Invalid sequences become U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);
 }
@@ -306,6 +318,8 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         if (root.contains("estimated_stations"))
             header.estimated_stations = estimated_stations_of(root.at("estimated_stations"), header.scans);
         if (root.contains("filling")) header.filling = filling_of(root.at("filling"));
+        if (root.contains("directory_pages"))
+            header.directory_pages = directory_pages_of(root.at("directory_pages"));
         return header;
     } catch (const std::exception& error) {
         return rejected(file, fmt::format("its metadata is damaged ({})", error.what()),

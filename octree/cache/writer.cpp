@@ -1,11 +1,11 @@
 #include "octree/cache/writer.h"
 
 #include <algorithm>
-#include <memory>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
+#include "octree/cache/checked_read.h"
+#include "octree/cache/directory.h"
 #include "octree/cache/metadata.h"
 #include "octree/tree/scan_number.h"
 
@@ -106,8 +106,8 @@ Result<std::vector<std::byte>> CacheWriter::entries(uint64_t first, uint64_t cou
     return bytes;
 }
 
-/// Distributes the entries to their levels' ranges at the end of the file. Returns the directory's checksum.
-Result<uint64_t> CacheWriter::write_directory() {
+/// Distributes the entries to their levels' ranges at the end of the file.
+Result<void> CacheWriter::write_directory() {
     LUCARNE_TRY(flush_entries());
     const uint64_t begin = end_, bytes = nodes_ * kEntryBytes;
     std::array<uint64_t, kMostLevel + 1> cursor{begin};
@@ -131,21 +131,50 @@ Result<uint64_t> CacheWriter::write_directory() {
         }
     }
     for (uint32_t level = 0; level <= kMostLevel; ++level) LUCARNE_TRY(flush(level));
-
-    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
-    XXH3_64bits_reset(state.get());
-    for (uint64_t at = 0; at < bytes; at += block.size()) {
-        const std::span part(block.data(), std::min<uint64_t>(block.size(), bytes - at));
-        LUCARNE_TRY(read_at(begin + at, part));
-        XXH3_64bits_update(state.get(), part.data(), part.size());
-    }
-    return XXH3_64bits_digest(state.get());
+    end_ += bytes;
+    return {};
 }
 
-Result<void> CacheWriter::finish(const SourceHeader& header) {
+/// Writes the list of the pages of a directory that is written.
+Result<DirectoryPages> CacheWriter::write_pages(uint64_t directory, uint32_t nodes) {
+    PageList list;
+    std::vector<std::byte> page(nodes * kEntryBytes);
+    const uint64_t bytes = nodes_ * kEntryBytes;
+    for (uint64_t at = 0; at < bytes; at += page.size()) {
+        const std::span part(page.data(), std::min<uint64_t>(page.size(), bytes - at));
+        LUCARNE_TRY(read_at(directory + at, part));
+        list.add(part);
+    }
+    std::vector<std::byte> stored(list.pages().size() * format::kPageBytes);
+    for (size_t i = 0; i < list.pages().size(); ++i)
+        format::store_page(list.pages()[i], &stored[i * format::kPageBytes]);
+    DirectoryPages pages{nodes, 0, format::checksum(stored)};
+    LUCARNE_ASSIGN(pages.offset, append(stored));
+    return pages;
+}
+
+/// The metadata are before the directory, and behind the pages of it if there are any, whose place they
+/// state.
+Result<void> CacheWriter::finish(const SourceHeader& described, const Paged& paged) {
     format::Superblock block;
     block.generation = generation_;
-    if (ScanNumber(header.schema).most() > kMostShortScans) block.version = format::kWideVersion;
+    if (ScanNumber(described.schema).most() > kMostShortScans) block.version = format::kWideVersion;
+    block.directory_bytes = nodes_ * kEntryBytes;
+    SourceHeader header = described;
+    header.directory_pages.reset();
+    const auto put_directory = [&]() -> Result<void> {
+        block.directory_offset = end_;
+        LUCARNE_TRY(write_directory());
+        const auto read = [this](uint64_t at, std::span<std::byte> out) { return read_at(at, out); };
+        LUCARNE_ASSIGN(block.directory_checksum,
+                       checksum_of(read, block.directory_offset, block.directory_bytes));
+        return {};
+    };
+    const bool pages = nodes_ >= paged.from;
+    if (pages) {
+        LUCARNE_TRY(put_directory());
+        LUCARNE_ASSIGN(header.directory_pages, write_pages(block.directory_offset, paged.nodes));
+    }
     const std::string metadata = metadata_text(header);
     if (metadata.size() > format::kMaxMetadata)
         return failed("metadata", fmt::format("{} bytes are more than a cache can hold", metadata.size()));
@@ -153,10 +182,8 @@ Result<void> CacheWriter::finish(const SourceHeader& header) {
     block.metadata_bytes = metadata.size();
     block.metadata_checksum = format::checksum(text);
     LUCARNE_ASSIGN(block.metadata_offset, append(text));
-    block.directory_offset = end_;
-    block.directory_bytes = nodes_ * kEntryBytes;
-    LUCARNE_ASSIGN(block.directory_checksum, write_directory());
-    end_ = block.file_bytes = block.directory_offset + block.directory_bytes;
+    if (!pages) LUCARNE_TRY(put_directory());
+    block.file_bytes = end_;
     return commit(block);
 }
 

@@ -36,6 +36,12 @@ class CacheWriter {
     /// offsets begin at 0.
     static Result<CacheWriter> stage(const std::filesystem::path& temp_folder);
 
+    /// How many nodes a page of the directory has, and how many nodes must be there.
+    struct Paged {
+        uint32_t nodes = 0;
+        uint64_t from = 0;
+    };
+
     /// Appends a payload and returns its offset.
     Result<uint64_t> append(std::span<const std::byte> payload);
     /// Leaves room for payloads that another process writes. Returns its offset.
@@ -58,8 +64,9 @@ class CacheWriter {
     /// Visits an even subsample of at most about `most` points: the coarsest levels, and of the last one the
     /// same share of every node.
     Result<void> visit_even(const SourceHeader& header, uint64_t most, const EvenVisit& visit);
-    /// Writes directory, metadata and superblocks, syncs, and gives a new file its name.
-    Result<void> finish(const SourceHeader& header);
+    /// Writes directory, metadata and superblocks, syncs, and gives a new file its name. A directory of at
+    /// least `paged.from` nodes can be read in pages of `paged.nodes`.
+    Result<void> finish(const SourceHeader& header, const Paged& paged = {1024, 1 << 17});
     /// Call when an update has failed: cuts off what it wrote, unless the switch may have happened.
     void abandon();
 
@@ -83,7 +90,8 @@ class CacheWriter {
     Result<void> load_each(const SourceHeader& header, std::span<const format::Entry> entries,
                            const LoadedVisit& visit);
     Result<std::vector<format::Entry>> coarsest(uint64_t most);
-    Result<uint64_t> write_directory();
+    Result<void> write_directory();
+    Result<DirectoryPages> write_pages(uint64_t directory, uint32_t nodes);
 
     std::optional<OutputFile> output_;    ///< of a new cache...
     std::optional<UpdateFile> update_;    ///< ...or of one that is updated

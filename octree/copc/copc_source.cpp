@@ -34,7 +34,7 @@ class CopcSource final : public NodeSource {
     }
 
     const SourceHeader& header() const override { return header_; }
-    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    NodeTable nodes() const override { return nodes_; }
     uint64_t directory_bytes() const override {
         return nodes_.size() * (sizeof(NodeInfo) + sizeof(io::copc::Node) + sizeof(io::laz::ChunkPlace) +
                                 sizeof(uint32_t) + sizeof(kept_[0])) +

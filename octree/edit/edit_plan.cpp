@@ -14,8 +14,8 @@ constexpr std::array<uint64_t, 3> kWorthwhile = {8, 64, UINT64_MAX};
 
 class Planner {
  public:
-    Planner(std::span<const NodeInfo> nodes, const Shift& shift, std::span<const uint64_t> changed,
-            const EditLimits& limits, uint64_t worthwhile)
+    Planner(NodeTable nodes, const Shift& shift, std::span<const uint64_t> changed, const EditLimits& limits,
+            uint64_t worthwhile)
         : nodes_(nodes),
           shift_(shift),
           limits_(limits),
@@ -65,7 +65,7 @@ class Planner {
         }
     }
 
-    std::span<const NodeInfo> nodes_;
+    NodeTable nodes_;
     const Shift& shift_;
     const EditLimits& limits_;
     uint64_t worthwhile_;
@@ -111,8 +111,8 @@ Shift::Shift(const Cube& before, const Cube& after) : levels_(after.doublings - 
         cell_[axis] = (after.first_cell[axis] - before.first_cell[axis]) >> before.doublings;
 }
 
-Result<EditPlan> plan_edit(std::span<const NodeInfo> nodes, const Shift& shift,
-                           std::span<const uint64_t> changed, uint64_t points, const EditLimits& limits) {
+Result<EditPlan> plan_edit(NodeTable nodes, const Shift& shift, std::span<const uint64_t> changed,
+                           uint64_t points, const EditLimits& limits) {
     if (points <= limits.leaf) return EditPlan{{{NodeKey{}, 0}}, {}, {}};
     for (const uint64_t worthwhile : kWorthwhile) {
         Planner planner(nodes, shift, changed, limits, worthwhile);

@@ -49,7 +49,7 @@ struct EditLimits {
 
 /// Plans an update. `changed`: how many points are added or removed, by the deepest old node that contains
 /// them. Rebuilt cubes are as small as `limits.most` allows. Errors: too many cubes even so.
-Result<EditPlan> plan_edit(std::span<const NodeInfo> nodes, const Shift& shift,
-                           std::span<const uint64_t> changed, uint64_t points, const EditLimits& limits);
+Result<EditPlan> plan_edit(NodeTable nodes, const Shift& shift, std::span<const uint64_t> changed,
+                           uint64_t points, const EditLimits& limits);
 
 }  // namespace lucarne::octree

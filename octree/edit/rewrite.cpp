@@ -423,7 +423,7 @@ Result<EditReport> Rewrite::run(CacheWriter* writer) {
 
 Result<OpenedCache> OpenedCache::open(const std::filesystem::path& path) {
     LUCARNE_ASSIGN(UpdateFile file, UpdateFile::open(path, "is being changed by another process"));
-    LUCARNE_ASSIGN(auto cache, CacheFile::open(path));
+    LUCARNE_ASSIGN(auto cache, CacheFile::open(path, kWholeDirectory));
     LUCARNE_ASSIGN(const auto blocks, read_superblocks(cache->file()));
     const size_t newest = blocks[0] && *blocks[0] == cache->superblock() ? 0 : 1;
     return OpenedCache{std::move(file), std::move(cache), newest};
@@ -436,7 +436,7 @@ Result<OpenedCache> OpenedCache::open(const std::filesystem::path& path, Ranks& 
     }
     LUCARNE_TRY(meet(ranks));  // from now on nobody else changes it
     if (!opened) {
-        LUCARNE_ASSIGN(auto cache, CacheFile::open(path));
+        LUCARNE_ASSIGN(auto cache, CacheFile::open(path, kWholeDirectory));
         opened.emplace(OpenedCache{{}, std::move(cache)});
     }
     const auto state = format::encode(opened->cache->superblock());

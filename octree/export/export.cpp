@@ -189,7 +189,7 @@ Result<void> Exporter::visit_batches(
             if (!more) return {};
         }
     }
-    return {};
+    return source_.directory_state();
 }
 
 Result<uint64_t> Exporter::write(io::PointWriter& writer,
@@ -241,6 +241,7 @@ Result<uint64_t> Exporter::write_copc(const std::filesystem::path& path, bool ov
         written += records.size() / schema_.stride;
         progress(key.level == kMaxLevel ? nodes[node].subtree_count : nodes[node].count);
     }
+    LUCARNE_TRY(source_.directory_state());
     LUCARNE_TRY(writer->finish());
     return written;
 }

@@ -39,7 +39,7 @@ class GrowingSource final : public NodeSource {
           decoders_(std::make_unique<codec::DecoderPool>(header_.schema)) {}
 
     const SourceHeader& header() const override { return header_; }
-    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    NodeTable nodes() const override { return nodes_; }
     Result<NodeData> load(uint32_t node) const override {
         const Content& content = contents_[node];
         const uint32_t stride = header_.schema.stride;

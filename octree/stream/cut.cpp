@@ -159,7 +159,7 @@ class Sweep {
     using Whole = std::pair<double, uint32_t>;  ///< the quality at which candidates_[second] is whole
 
     const NodeSource& source_;
-    std::span<const NodeInfo> nodes_;
+    NodeTable nodes_;
     const Reach& reach_;
     std::vector<Candidate> candidates_;
     std::priority_queue<Whole, std::vector<Whole>, std::greater<>> heap_;
@@ -233,10 +233,10 @@ Cut full_cut(const NodeSource& source) {
     const auto nodes = source.nodes();
     cut.visited = nodes.size();
     cut.nodes.reserve(nodes.size());
-    for (uint32_t node = 0; node < nodes.size(); ++node) {
-        const float level = static_cast<float>(nodes[node].key.level);
-        cut.nodes.push_back({node, nodes[node].count, std::exp2(-level)});
-        cut.points += nodes[node].count;
+    for (uint32_t index = 0; index < nodes.size(); ++index) {
+        const NodeInfo node = nodes[index];
+        cut.nodes.push_back({index, node.count, std::exp2(-static_cast<float>(node.key.level))});
+        cut.points += node.count;
     }
     return cut;
 }

@@ -16,11 +16,10 @@ namespace {
 
 using Sources = std::vector<std::shared_ptr<const NodeSource>>;
 
-class JoinedSource final : public NodeSource {
+class JoinedSource final : public NodeSource, private NodePages {
  public:
-    JoinedSource(Sources sources, size_t nodes) {
+    explicit JoinedSource(Sources sources) {
         header_.metres_per_unit = common_unit(sources);
-        nodes_.reserve(nodes);
         for (auto& source : sources) add(std::move(source));
         const glm::dvec3 extent = header_.max - header_.min;
         // Like a cache's root cube: a little larger than the box, so that its upper faces are inside.
@@ -29,7 +28,11 @@ class JoinedSource final : public NodeSource {
     }
 
     const SourceHeader& header() const override { return header_; }
-    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    NodeTable nodes() const override { return {*this, nodes_}; }
+    Result<void> directory_state() const override {
+        for (const Part& part : parts_) LUCARNE_TRY(part.source->directory_state());
+        return {};
+    }
     std::vector<uint32_t> roots() const override {
         std::vector<uint32_t> roots;
         for (const Part& part : parts_) roots.push_back(part.first_node);
@@ -42,7 +45,7 @@ class JoinedSource final : public NodeSource {
                 part.first_scan};
     }
     uint64_t directory_bytes() const override {
-        uint64_t bytes = nodes().size_bytes();
+        uint64_t bytes = 0;
         for (const Part& part : parts_) bytes += part.source->directory_bytes();
         return bytes;
     }
@@ -90,15 +93,9 @@ class JoinedSource final : public NodeSource {
     void add(std::shared_ptr<const NodeSource> source) {
         const SourceHeader& own = source->header();
         if (source->nodes().empty()) return;
-        const Part part{source, static_cast<uint32_t>(nodes_.size()),
-                        static_cast<uint32_t>(header_.scans.size()),
+        const Part part{source, nodes_, static_cast<uint32_t>(header_.scans.size()),
                         own.metres_per_unit / header_.metres_per_unit};
-        for (NodeInfo node : source->nodes()) {
-            if (node.parent != kNoNode) node.parent += part.first_node;
-            if (node.first_child != kNoNode) node.first_child += part.first_node;
-            node.area_floor = stored_floors(node.area_floor, part.scale);
-            nodes_.push_back(node);
-        }
+        nodes_ += static_cast<uint32_t>(source->nodes().size());
         if (parts_.empty()) header_.schema = own.schema;
         header_.min = parts_.empty() ? own.min * part.scale : glm::min(header_.min, own.min * part.scale);
         header_.max = parts_.empty() ? own.max * part.scale : glm::max(header_.max, own.max * part.scale);
@@ -108,13 +105,23 @@ class JoinedSource final : public NodeSource {
         parts_.push_back(part);
     }
 
+    /// Returns a node of a part with the numbers and the unit of all.
+    NodeInfo node(uint32_t index) const override {
+        const Part& part = part_with(index);
+        NodeInfo node = part.source->nodes()[index - part.first_node];
+        if (node.parent != kNoNode) node.parent += part.first_node;
+        if (node.first_child != kNoNode) node.first_child += part.first_node;
+        node.area_floor = stored_floors(node.area_floor, part.scale);
+        return node;
+    }
+
     const Part& part_with(uint32_t node) const {
-        assert(node < nodes_.size());
+        assert(node < nodes_);
         return *(std::ranges::upper_bound(parts_, node, {}, &Part::first_node) - 1);
     }
 
     SourceHeader header_;
-    std::vector<NodeInfo> nodes_;
+    uint32_t nodes_ = 0;
     std::vector<Part> parts_;  ///< sorted by first_node
 };
 
@@ -139,7 +146,7 @@ Result<std::shared_ptr<const NodeSource>> join_sources(Sources sources) {
     for (const auto& source : sources) nodes += source->nodes().size();
     if (nodes >= kNoNode) return rejected("sources", "they have more nodes together than can be numbered");
     if (const std::string far = io::far_apart(placed(sources)); !far.empty()) log::warn("{}", far);
-    return std::make_shared<const JoinedSource>(std::move(sources), nodes);
+    return std::make_shared<const JoinedSource>(std::move(sources));
 }
 
 }  // namespace lucarne::octree

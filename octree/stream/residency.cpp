@@ -381,6 +381,13 @@ void ResidencyBase::renew(std::span<const uint32_t> nodes) {
     }
 }
 
+void ResidencyBase::renew_all() {
+    const std::lock_guard lock(state_->mutex);
+    state_->broken.assign(state_->broken.size(), false);
+    state_->stats.lost = 0;
+    for (auto& [node, entry] : state_->entries) entry.stale = entry.held || entry.in_flight;
+}
+
 auto ResidencyBase::poll_any(size_t limit) -> std::vector<AnyEvent> {
     std::vector<AnyEvent> polled;
     {

@@ -77,6 +77,8 @@ class ResidencyBase {
     /// `replaced` (as evicted and loaded where two copies do not fit); failed ones are tried once more. Takes
     /// effect with the next want().
     void renew(std::span<const uint32_t> nodes);
+    /// The same for all nodes.
+    void renew_all();
     /// Blocks until every wanted node is loaded, failed or refused by the cap, and then returns true. Returns
     /// false if what is in transit has reached its cap: loading continues when events have been polled.
     bool wait();

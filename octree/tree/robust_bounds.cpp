@@ -53,14 +53,29 @@ double quantile(std::vector<Weighted>& parts, int axis, bool high, double share)
     return place(parts.back());
 }
 
-/// The deepest level that is looked at. Its nodes stand for all their descendants, so that clouds of any size
-/// are quick to measure.
-uint32_t deepest(std::span<const NodeInfo> nodes) {
-    std::array<size_t, kMostLevel + 1> at_level{};
-    for (const NodeInfo& node : nodes) ++at_level[node.key.level];
+/// The nodes down to the deepest level that is looked at, in the order of their numbers. Those of that level
+/// stand for all their descendants, so that clouds of any size are quick to measure.
+struct Coarsest {
+    std::vector<uint32_t> nodes;
     uint32_t level = 0;
-    for (size_t sum = at_level[0]; level < kMostLevel && (sum += at_level[level + 1]) <= kMostNodes;) ++level;
-    return level;
+};
+
+Coarsest coarsest_of(const NodeSource& source, const NodeTable& nodes) {
+    Coarsest found{source.roots(), 0};
+    for (size_t first = 0; found.level < kMostLevel; ++found.level) {
+        std::vector<uint32_t> below;
+        for (size_t i = first; i < found.nodes.size() && found.nodes.size() + below.size() <= kMostNodes;
+             ++i) {
+            const NodeInfo node = nodes[found.nodes[i]];
+            for (uint32_t octant = 0; octant < 8; ++octant)
+                if (const uint32_t child = node.child(octant); child != kNoNode) below.push_back(child);
+        }
+        if (below.empty() || found.nodes.size() + below.size() > kMostNodes) break;
+        first = found.nodes.size();
+        found.nodes.insert(found.nodes.end(), below.begin(), below.end());
+    }
+    std::ranges::sort(found.nodes);
+    return found;
 }
 
 /// Returns the parts that divide the points: the leaves, and the nodes of the deepest level with all their
@@ -68,7 +83,7 @@ uint32_t deepest(std::span<const NodeInfo> nodes) {
 /// would weigh as much as rooms.
 Parts parts_of(const NodeSource& source) {
     const auto nodes = source.nodes();
-    const uint32_t level = deepest(nodes);
+    const auto [looked_at, level] = coarsest_of(source, nodes);
     std::vector<uint32_t> coarse;
     Parts parts;
     const double strays = kOutliers * static_cast<double>(source.header().points);
@@ -76,10 +91,11 @@ Parts parts_of(const NodeSource& source) {
         const Cube cube = source.cube(i);
         parts.all.push_back({cube.min, cube.min + cube.size, static_cast<double>(nodes[i].subtree_count)});
     };
-    for (uint32_t i = 0; i < nodes.size(); ++i) {
-        const bool leaf = !nodes[i].child_mask;
-        if (nodes[i].key.level > level || (!leaf && nodes[i].key.level < level)) continue;
-        if (leaf && nodes[i].key.level < kFineLevel)
+    for (const uint32_t i : looked_at) {
+        const NodeInfo node = nodes[i];
+        const bool leaf = !node.child_mask;
+        if (!leaf && node.key.level < level) continue;
+        if (leaf && node.key.level < kFineLevel)
             coarse.push_back(i);
         else
             add_cube(i);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,36 +8,10 @@
 #include <vector>
 
 #include "io/points.h"
-#include "octree/tree/key.h"
+#include "octree/tree/nodes.h"
 #include "octree/tree/station_colour.h"
 
 namespace lucarne::octree {
-
-inline constexpr uint32_t kNoNode = UINT32_MAX;
-inline constexpr size_t kPrefixSteps = 4;  ///< prefixes of 1, 1/2, 1/4, 1/8
-
-/// What is known about a node without loading its points.
-struct NodeInfo {
-    NodeKey key;
-    uint32_t parent = kNoNode;
-    uint32_t first_child = kNoNode;  ///< children are contiguous in the directory, in octant order
-    uint8_t child_mask = 0;          ///< bit i: the child in octant i exists
-    uint32_t count = 0;              ///< points in this node itself
-    uint64_t subtree_count = 0;      ///< points with all descendants
-    uint32_t payload_bytes = 0;      ///< on disk
-    /// Least surface share of a surfel (in square file units) where this node is the deepest of a cut and the
-    /// first count/2^i of its points are drawn. See octree/tree/footprint.h.
-    std::array<float, kPrefixSteps> area_floor{};
-
-    /// The child in octant `o`, or kNoNode.
-    uint32_t child(uint32_t o) const {
-        if (!(child_mask >> o & 1)) return kNoNode;
-        return first_child + static_cast<uint32_t>(__builtin_popcount(child_mask & ((1u << o) - 1)));
-    }
-    /// The mean distance between neighbouring points when all of the node's points are drawn, in the file's
-    /// unit.
-    float spacing() const { return __builtin_sqrtf(area_floor[0]); }
-};
 
 /// A loaded node: `count` records in the schema's layout, in prefix order.
 struct NodeData {
@@ -56,6 +29,13 @@ struct FillingSection {
     uint64_t offset = 0, bytes = 0, checksum = 0;
     uint8_t codec = 0;
     bool operator==(const FillingSection&) const = default;
+};
+
+/// Where a cache stores what its directory's pages need to be read one by one (octree/FORMAT.md).
+struct DirectoryPages {
+    uint32_t nodes = 0;  ///< of each page but the last
+    uint64_t offset = 0, checksum = 0;
+    bool operator==(const DirectoryPages&) const = default;
 };
 
 /// A place where a scanner stood, as the points show; no file states it (octree/stations).
@@ -82,6 +62,8 @@ struct SourceHeader {
     std::vector<EstimatedStation> estimated_stations;
     /// Set if holes were looked for.
     std::optional<FillingSection> filling;
+    /// Set if a cache's directory is large.
+    std::optional<DirectoryPages> directory_pages;
     std::string options;  ///< how the scans were read where it differs from the default: io::options_text
     /// Only some places of the scan are known yet, with gaps between them: the first sample of a compressed
     /// file that is being converted.
@@ -114,14 +96,17 @@ struct SourceIdentity {
 };
 
 /// Hands out octree nodes: a cache, a COPC file, a growing build, or several sources joined. Thread-safe. The
-/// directory is in memory (about 64 bytes a node); points are loaded node by node.
+/// directory is in memory (about 100 bytes a node) or, if it is large, read page by page. Points are loaded
+/// node by node.
 class NodeSource {
  public:
     virtual ~NodeSource() = default;
     virtual const SourceHeader& header() const = 0;
     /// Parents come before children; a part's nodes are contiguous, its root first. May be empty. Areas are
     /// in the source's unit.
-    virtual std::span<const NodeInfo> nodes() const = 0;
+    virtual NodeTable nodes() const = 0;
+    /// Fails if a page of the directory could not be read. Its nodes then look empty.
+    virtual Result<void> directory_state() const { return {}; }
     virtual std::vector<uint32_t> roots() const {
         return nodes().empty() ? std::vector<uint32_t>{} : std::vector<uint32_t>{0};
     }
@@ -137,8 +122,8 @@ class NodeSource {
     uint64_t record_bytes(uint32_t node) const {
         return uint64_t{nodes()[node].count} * part_of(node).header.schema.stride;
     }
-    /// Bytes of memory that the directory takes.
-    virtual uint64_t directory_bytes() const { return nodes().size_bytes(); }
+    /// The most bytes of memory that the directory takes.
+    virtual uint64_t directory_bytes() const { return nodes().size() * sizeof(NodeInfo); }
     /// Loads and checks one node; blocks. Errors: unreadable, truncated, checksum.
     virtual Result<NodeData> load(uint32_t node) const = 0;
     /// Returns nothing for sources that have no such file, for example a build that grows.

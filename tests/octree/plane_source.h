@@ -51,7 +51,7 @@ class PlaneSource : public NodeSource {
     }
 
     const SourceHeader& header() const override { return header_; }
-    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    NodeTable nodes() const override { return nodes_; }
     std::vector<NodeInfo>& edit() { return nodes_; }
 
     /// Every byte of a node is the low byte of its index. Loading waits while the gate is closed.

@@ -41,15 +41,20 @@ std::string text_of(const Json& value) {
     return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json describe_octree(const octree::NodeSource& cache, const char* kind) {
+Result<Json> describe_octree(const octree::NodeSource& cache, const char* kind) {
     const auto& header = cache.header();
-    Json levels = Json::array();
+    struct Level {
+        uint64_t nodes = 0, points = 0;
+    };
+    std::vector<Level> found;
     for (const auto& node : cache.nodes()) {
-        while (levels.size() <= node.key.level) levels.push_back({{"nodes", 0}, {"points", 0}});
-        auto& level = levels[node.key.level];
-        level["nodes"] = level["nodes"].get<uint64_t>() + 1;
-        level["points"] = level["points"].get<uint64_t>() + node.count;
+        if (found.size() <= node.key.level) found.resize(node.key.level + 1);
+        ++found[node.key.level].nodes;
+        found[node.key.level].points += node.count;
     }
+    LUCARNE_TRY(cache.directory_state());
+    Json levels = Json::array();
+    for (const Level& level : found) levels.push_back({{"nodes", level.nodes}, {"points", level.points}});
     Json scans = Json::array();
     for (const auto& scan : header.scans)
         scans.push_back({{"path", scan.path},
@@ -106,7 +111,7 @@ Result<Json> describe(const std::string& path, const InfoOptions& options) {
     LUCARNE_ASSIGN(const auto source, octree::open_octree(file));
     if (kind == octree::OctreeKind::cache) return describe_octree(*source, "cache");
     // Its octree knows only the box that the header states.
-    Json described = describe_octree(*source, "copc");
+    LUCARNE_ASSIGN(Json described, describe_octree(*source, "copc"));
     LUCARNE_ASSIGN(const Json scan, describe_scan(file, options));
     for (const char* key : {"min", "max"}) described.erase(key);
     for (const char* key : {"min", "max", "stated_min", "stated_max", "left_out"})

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,25 +28,22 @@ uint64_t pool_bytes(uint64_t surfels) {
 
 /// Returns the size of the pool: what the caps allow, but at most the whole cloud.
 uint64_t SurfelStream::pool_surfels() const {
-    uint64_t whole = 0, largest = 0;
+    const auto share = static_cast<uint64_t>(kPoolShare * static_cast<double>(caps_.device_memory));
+    const uint64_t most = std::min(share, device_.info().max_texel_bytes);
+    uint64_t whole = filled_bytes(), largest = 0;
     for (const octree::NodeInfo& node : source_->nodes()) {
         whole += pool_bytes(node.count);
         largest = std::max(largest, pool_bytes(node.count));
+        if (whole >= most) break;  // further nodes of a large cloud change nothing
     }
-    whole += filled_bytes();
     // Room for recoloured nodes that arrive before the old ones are freed.
     whole += (caps_.load_threads + 1) * largest;
-    const auto share = static_cast<uint64_t>(kPoolShare * static_cast<double>(caps_.device_memory));
-    const uint64_t bytes = std::min({whole, share, device_.info().max_texel_bytes});
-    return std::min<uint64_t>(bytes / sizeof(gi::PackedSurfel), UINT32_MAX);
+    return std::min<uint64_t>(std::min(whole, most) / sizeof(gi::PackedSurfel), UINT32_MAX);
 }
 
 void SurfelStream::empty_pool() {
     residency_.reset();
-    if (!source_) return;
-    for (uint32_t node = 0; node < source_->nodes().size(); ++node)
-        if (pool_.holds(node)) pool_.evict(node);
-    for (uint32_t node = gi::kFirstFilled; pool_.holds(node); ++node) pool_.evict(node);
+    pool_.evict_all();
 }
 
 /// Bytes of the pool that the synthetic surfels take.
@@ -138,9 +134,7 @@ Result<void> SurfelStream::renew(const gi::Scene& scene) {
     }
     preparation_->set_scene(shown, baked_ ? &*baked_ : nullptr);
     LUCARNE_TRY(load_fillings());
-    std::vector<uint32_t> all(source_->nodes().size());
-    std::iota(all.begin(), all.end(), 0u);
-    residency_->renew(all);
+    residency_->renew_all();
     return {};
 }
 

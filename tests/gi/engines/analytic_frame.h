@@ -56,7 +56,7 @@ class OneNode final : public octree::NodeSource {
     }
 
     const octree::SourceHeader& header() const override { return header_; }
-    std::span<const octree::NodeInfo> nodes() const override { return nodes_; }
+    octree::NodeTable nodes() const override { return nodes_; }
     Result<octree::NodeData> load(uint32_t) const override { return data_; }
 
  private:

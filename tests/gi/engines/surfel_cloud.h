@@ -60,7 +60,7 @@ class SurfelCloud : public octree::NodeSource {
     }
 
     const octree::SourceHeader& header() const override { return header_; }
-    std::span<const octree::NodeInfo> nodes() const override { return nodes_; }
+    octree::NodeTable nodes() const override { return nodes_; }
     Result<octree::NodeData> load(uint32_t) const override { return failed("cloud", "has no records"); }
 
     const std::vector<PackedSurfel>& packed(uint32_t node) const { return packed_[node]; }

@@ -52,7 +52,7 @@ class Points : public octree::NodeSource {
         ++header_.points;
     }
     const octree::SourceHeader& header() const override { return header_; }
-    std::span<const octree::NodeInfo> nodes() const override { return nodes_; }
+    octree::NodeTable nodes() const override { return nodes_; }
     Result<octree::NodeData> load(uint32_t) const override { return data_; }
 
     PackedSurfel packed(const Look& look, size_t point = 0, uint32_t first_scan = 0) const {

@@ -259,7 +259,7 @@ TEST_F(SurfelPoolTest, HostileFloorsAndEntriesAreBounded) {
             }
         }
         const octree::SourceHeader& header() const override { return header_; }
-        std::span<const octree::NodeInfo> nodes() const override { return nodes_; }
+        octree::NodeTable nodes() const override { return nodes_; }
         Result<octree::NodeData> load(uint32_t) const override { return failed("hostile", "has no points"); }
 
      private:

@@ -167,7 +167,7 @@ class WithoutScans final : public NodeSource {
         header_.schema.add(std::string(io::names::scan), io::ScalarType::u16);
     }
     const SourceHeader& header() const override { return header_; }
-    std::span<const NodeInfo> nodes() const override { return {}; }
+    NodeTable nodes() const override { return {}; }
     Result<NodeData> load(uint32_t) const override { return rejected("nothing", "has no node"); }
 
  private:

@@ -97,7 +97,7 @@ std::vector<uint64_t> numbers_in(const NodeSource& source) {
 }
 
 /// Checks the directory: parents before children, children in octant order, counts that add up.
-::testing::AssertionResult is_directory(std::span<const NodeInfo> nodes) {
+::testing::AssertionResult is_directory(NodeTable nodes) {
     size_t next = 1;
     std::vector<uint64_t> below(nodes.size(), 0);
     if (nodes.empty() || nodes[0].key != NodeKey{}) return ::testing::AssertionFailure() << "no root";

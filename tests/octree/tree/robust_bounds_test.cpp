@@ -81,7 +81,7 @@ class Damaged : public NodeSource {
                       glm::dvec3(damaged(i) ? std::nan("") : 63.0 - i));
     }
     const SourceHeader& header() const override { return header_; }
-    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    NodeTable nodes() const override { return nodes_; }
     Result<NodeData> load(uint32_t) const override { return data_; }
 
  private:

@@ -260,7 +260,7 @@ class TwoWhites final : public octree::NodeSource {
         nodes_[0].count = 2;
     }
     const octree::SourceHeader& header() const override { return header_; }
-    std::span<const octree::NodeInfo> nodes() const override { return nodes_; }
+    octree::NodeTable nodes() const override { return nodes_; }
     Result<octree::NodeData> load(uint32_t) const override {
         const io::Schema& schema = header_.schema;
         octree::NodeData data{2, std::vector<std::byte>(size_t{2} * schema.stride)};
