@@ -9,7 +9,7 @@
 
 #include "gi/scene/scene.h"
 #include "gi/surfels/surfel_pool.h"
-#include "octree/cache/cache.h"
+#include "octree/cache/file.h"
 #include "octree/cache/format.h"
 #include "octree/stream/cut.h"
 #include "tests/fuzz/fuzz.h"
@@ -29,7 +29,7 @@ std::span<std::byte> part(std::span<std::byte> file, uint64_t offset, uint64_t b
 std::string_view digits_after(std::string_view text, std::string_view key, size_t begin) {
     const size_t at = text.find(key, begin);
     if (at == std::string_view::npos) return {};
-    const size_t first = at + key.size();
+    const size_t first = std::min(text.find_first_not_of(' ', at + key.size()), text.size());
     return text.substr(first, text.find_first_not_of("0123456789", first) - first);
 }
 uint64_t number_of(std::string_view digits) {
@@ -38,43 +38,80 @@ uint64_t number_of(std::string_view digits) {
     return number;
 }
 
-/// Corrects the checksum of the synthetic surfels, which is a number of the metadata: appends metadata with
-/// the right one to the file. It works on the text, because metadata may be no JSON or nested a million
-/// times.
-void reseal_filling(std::string& bytes) {
+/// The metadata's text. It is handled as text, because metadata may be no JSON or nested a million times.
+std::string metadata_of(std::string& bytes) {
     uint64_t place[2];  // offset, bytes
     std::memcpy(place, &bytes[48], sizeof place);
-    const auto file = std::as_writable_bytes(std::span(bytes));
-    const auto stored = part(file, place[0], place[1]);
-    const std::string text(reinterpret_cast<const char*>(stored.data()), stored.size());
-    const size_t filling = text.find("\"filling\"");
-    const auto checksum = digits_after(text, "\"checksum\":", filling);
-    if (filling == std::string::npos || checksum.empty()) return;
-    const uint64_t sum = format::checksum(part(file, number_of(digits_after(text, "\"offset\":", filling)),
-                                               number_of(digits_after(text, "\"bytes\":", filling))));
+    const auto stored = part(std::as_writable_bytes(std::span(bytes)), place[0], place[1]);
+    return {reinterpret_cast<const char*>(stored.data()), stored.size()};
+}
+
+/// Corrects the checksum that follows `begin` in the metadata's text: appends metadata with the right one to
+/// the file.
+void put_checksum(std::string& bytes, const std::string& text, size_t begin, uint64_t sum) {
+    const auto checksum = digits_after(text, "\"checksum\":", begin);
+    if (checksum.empty()) return;
     const size_t at = static_cast<size_t>(checksum.data() - text.data());
     const std::string corrected =
         text.substr(0, at) + std::to_string(sum) + text.substr(at + checksum.size());
     if (corrected == text) return;
-    place[0] = bytes.size();
-    place[1] = corrected.size();
+    const uint64_t place[2] = {bytes.size(), corrected.size()};
     std::memcpy(&bytes[48], place, sizeof place);
     bytes += corrected;
 }
 
-/// Corrects magic, version, size and every checksum.
-void reseal(std::string& bytes) {
-    reseal_filling(bytes);
+void reseal_filling(std::string& bytes) {
+    const std::string text = metadata_of(bytes);
+    const size_t filling = text.find("\"filling\"");
+    if (filling == std::string::npos) return;
+    const auto number = [&](const char* name) { return number_of(digits_after(text, name, filling)); };
     const auto file = std::as_writable_bytes(std::span(bytes));
-    uint64_t fields[8];
-    std::memcpy(fields, &file[16], sizeof fields);
-    format::Superblock block{fields[0], fields[1], fields[2], 0, fields[4], fields[5], 0, file.size()};
-    const auto directory = part(file, block.directory_offset, block.directory_bytes);
+    put_checksum(bytes, text, filling,
+                 format::checksum(part(file, number("\"offset\":"), number("\"bytes\":"))));
+}
+
+/// Corrects the checksums of the directory's pages, and that of their list.
+void reseal_pages(std::string& bytes) {
+    const std::string text = metadata_of(bytes);
+    const size_t pages = text.find("\"directory_pages\"");
+    if (pages == std::string::npos) return;
+    const auto number = [&](const char* name) { return number_of(digits_after(text, name, pages)); };
+    const auto file = std::as_writable_bytes(std::span(bytes));
+    uint64_t place[2];  // offset, bytes
+    std::memcpy(place, &bytes[24], sizeof place);
+    const auto directory = part(file, place[0], place[1]);
+    const uint64_t step = std::min<uint64_t>(number("\"nodes\":"), 1 << 20) * format::kEntryBytes;
+    if (step == 0) return;
+    const auto list =
+        part(file, number("\"offset\":"), (directory.size() + step - 1) / step * format::kPageBytes);
+    for (size_t at = 0, page = 0; at < directory.size() && !list.empty(); at += step, ++page)
+        io::store(&list[page * format::kPageBytes],
+                  format::checksum(directory.subspan(at, std::min<size_t>(step, directory.size() - at))));
+    put_checksum(bytes, text, pages, format::checksum(list));
+}
+
+void reseal_entries(std::string& bytes) {
+    const auto file = std::as_writable_bytes(std::span(bytes));
+    uint64_t place[2];  // offset, bytes
+    std::memcpy(place, &bytes[24], sizeof place);
+    const auto directory = part(file, place[0], place[1]);
     for (size_t at = 0; at + format::kEntryBytes <= directory.size(); at += format::kEntryBytes) {
         format::Entry entry = format::load_entry(&directory[at]);
         entry.checksum = format::checksum(part(file, entry.payload_offset, entry.payload_bytes));
         format::store_entry(entry, &directory[at]);
     }
+}
+
+/// Corrects magic, version, size and every checksum.
+void reseal(std::string& bytes) {
+    reseal_filling(bytes);
+    reseal_entries(bytes);
+    reseal_pages(bytes);
+    const auto file = std::as_writable_bytes(std::span(bytes));
+    uint64_t fields[8];
+    std::memcpy(fields, &file[16], sizeof fields);
+    format::Superblock block{fields[0], fields[1], fields[2], 0, fields[4], fields[5], 0, file.size()};
+    const auto directory = part(file, block.directory_offset, block.directory_bytes);
     block.directory_checksum = format::checksum(directory);
     block.metadata_checksum = format::checksum(part(file, block.metadata_offset, block.metadata_bytes));
     const auto encoded = format::encode(block);
@@ -109,8 +146,12 @@ bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     std::memcpy(&bytes[octree::format::kFirstPayload], data + octree::kFields, size - octree::kFields);
     octree::reseal(bytes);
     const auto file = memory_source(bytes);
-    (void)octree::verify_cache(file, [](uint64_t) {});
-    const auto opened = octree::open_cache(file);
-    if (opened) octree::use(**opened);
+    // With the directory whole in memory, and with the fewest pages.
+    for (const uint64_t memory : {octree::kWholeDirectory, uint64_t{0}}) {
+        (void)octree::verify_cache(
+            file, [](uint64_t) {}, memory);
+        const auto opened = octree::CacheFile::open(file, memory);
+        if (opened) octree::use(**opened);
+    }
     return true;
 }

@@ -100,20 +100,41 @@ Result<void> write(const std::filesystem::path& path, Filled filled) {
     return writer.finish(whole);
 }
 
+/// Writes 17 nodes, whose directory has three pages.
+Result<void> write_pages(const std::filesystem::path& path) {
+    SourceHeader whole = header();
+    LUCARNE_ASSIGN(auto writer, CacheWriter::create(path, true, path.parent_path()));
+    const NodeKey root, six = root.child(6);
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+        if (octant != 6) {
+            LUCARNE_TRY(add_node(writer, whole, root.child(octant), 0, 1, 0));
+            continue;
+        }
+        for (uint32_t below = 0; below < 8; ++below)
+            LUCARNE_TRY(add_node(writer, whole, six.child(below), 0, 1, 0));
+        LUCARNE_TRY(add_node(writer, whole, six, 255, 1, 8));
+    }
+    LUCARNE_TRY(add_node(writer, whole, root, 255, 1, 16));
+    return writer.finish(whole, {format::kLeastPageNodes, 1});
+}
+
 }  // namespace
 }  // namespace lucarne::octree
 
 void lucarne::fuzz::cache_seeds(const Seeds& seeds) {
     using octree::Filled;
-    for (const auto& [name, filled] :
-         {std::pair{"levels", Filled::no}, {"filled", Filled::raw}, {"filled-coded", Filled::coded}}) {
+    const auto keep = [&](const std::string& name, const auto& write) {
         const auto path = seeds.folder() / fmt::format("{}.luc", name);
-        const auto written = octree::write(path, filled);
+        const Result<void> written = write(path);
         if (!written) throw std::runtime_error(written.error().line());
         const auto verified = octree::verify_cache(path, [](uint64_t) {});
         if (!verified) throw std::runtime_error(verified.error().line());
         std::string bytes = Seeds::taken(path);
         bytes.erase(88, octree::format::kFirstPayload - 88);
         seeds.add(name, bytes);
-    }
+    };
+    for (const auto& [name, filled] :
+         {std::pair{"levels", Filled::no}, {"filled", Filled::raw}, {"filled-coded", Filled::coded}})
+        keep(name, [how = filled](const auto& path) { return octree::write(path, how); });
+    keep("pages", octree::write_pages);
 }
