@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -18,7 +19,9 @@
 #include "gi/engines/paths/options.h"
 #include "gi/engines/paths/pixel_points.h"
 #include "gi/engines/paths/relight.h"
+#include "gi/gather/gather_options.h"
 #include "gi/gather/gather_sky.h"
+#include "gi/gather/upsample.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
@@ -31,9 +34,10 @@ namespace lucarne::gi {
 namespace paths {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,   &kOnlyBounce.info, &kPointSpacing.info,    &kGatherRays.info,   &kEntryPoints.info,
-    &kTransport.info, &kSkyLight.info,   &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info,  &kPointSpacing.info,
+                                          &kGatherRays.info,   &kEntryPoints.info, &kTransport.info,
+                                          &kSkyLight.info,     &kGatherEvery.info, &kLightResolution.info,
+                                          &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "paths",
                            .label = "Light paths in advance",
                            .description = "light paths computed in advance: lamps move with all bounces",
@@ -66,6 +70,8 @@ class PathsEngine final : public Engine {
     };
     Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const ArrivingLight* arriving_light(Frame& frame, std::span<const Material> materials);
+    std::vector<glm::vec4> irradiance_of_pixels(const Frame& frame, std::span<const SurfacePoint> surfaces,
+                                                uint32_t step);
     void add_indirect(Frame& frame);
 
     SceneRevisions scene_;
@@ -152,6 +158,29 @@ const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const M
     return &*arriving_;
 }
 
+/// Sets the irradiance of all pixels, W/m^2: found at one pixel in each square of `step`, and between these
+/// interpolated where they lie in one plane.
+std::vector<glm::vec4> PathsEngine::irradiance_of_pixels(const Frame& frame,
+                                                         std::span<const SurfacePoint> surfaces,
+                                                         uint32_t step) {
+    // The places do not move from frame to frame, or their points would have to be found again.
+    const GatherGrid grid{frame.camera.width, frame.camera.height, step, step / 2, step / 2};
+    std::vector<uint32_t> pixels;
+    for (uint32_t row = 0; row < grid.rows(); ++row)
+        for (uint32_t column = 0; column < grid.columns(); ++column)
+            pixels.push_back(grid.pixel(column, row));
+    std::vector<glm::vec4> found(pixels.size());
+    pixel_points_.visit(PixelPoints::List::grid, pixels, [&](size_t i, std::span<const PointShare> about) {
+        found[i] = glm::vec4(irradiance_of(about, irradiance_), 0);
+    });
+    std::vector<glm::vec4> all(surfaces.size());
+    const std::vector<uint32_t> rest = upsample(frame.camera, surfaces, grid, found, all);
+    pixel_points_.visit(PixelPoints::List::rest, rest, [&](size_t i, std::span<const PointShare> about) {
+        all[rest[i]] = glm::vec4(irradiance_of(about, irradiance_), 0);
+    });
+    return all;
+}
+
 /// Adds what pixels reflect of the light at the gathering points about them.
 void PathsEngine::add_indirect(Frame& frame) {
     const PathsBake& bake = relight_->bake();
@@ -161,23 +190,34 @@ void PathsEngine::add_indirect(Frame& frame) {
     const std::vector<GBufferTexel> texels = download_gbuffer(frame);
     const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
-    for (size_t first = 0; first < surfaces.size(); first += PixelPoints::kMostPixels) {
-        pixel_points_.find(bake, frame.camera, texels, surfaces, frame.bake_offset, first);
-        alone_ += pixel_points_.alone();
-        parallel_ranges(pixel_points_.count(), kPixelsATask, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i) {
-                const SurfacePoint& at = surfaces[first + i];
-                const std::span<const PointShare> about = pixel_points_.of(i);
-                if (about.empty()) continue;
+    const auto reflectance = [&](const SurfacePoint& at) {
+        return make_reflectance(materials[at.material % materials.size()], at.albedo);
+    };
+    // Lobes need the points of each pixel.
+    const uint32_t step = glossy ? 1 : frame.settings[kGatherEvery];
+    pixel_points_.begin(bake, frame.camera, texels, surfaces, frame.bake_offset, step);
+    if (step > 1) {
+        const std::vector<glm::vec4> irradiance = irradiance_of_pixels(frame, surfaces, step);
+        parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                radiance[i] += glm::vec4(reflectance(surfaces[i]).kd / kPi, 0) * irradiance[i];
+        });
+    } else {
+        std::vector<uint32_t> pixels(surfaces.size());
+        std::iota(pixels.begin(), pixels.end(), 0u);
+        pixel_points_.visit(
+            PixelPoints::List::grid, pixels, [&](size_t i, std::span<const PointShare> about) {
+                if (about.empty()) return;
+                const SurfacePoint& at = surfaces[i];
                 const glm::vec3 irradiance = irradiance_of(about, irradiance_);
-                const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
+                const Reflectance r = reflectance(at);
                 glm::vec3 reflected = r.kd / kPi * irradiance;
                 if (glossy && r.ks > 0)
                     reflected += glossy->reflected(about, irradiance, r, at.normal, at.viewer);
-                radiance[first + i] += glm::vec4(reflected, 0);
-            }
-        });
+                radiance[i] += glm::vec4(reflected, 0);
+            });
     }
+    alone_ += pixel_points_.alone();
     upload_radiance(frame, radiance);
 }
 
@@ -221,6 +261,7 @@ std::vector<std::pair<std::string, double>> PathsEngine::stats() const {
             {"leaves", paths.groups.leaves},
             {"groups", paths.groups.count()},
             {"lamps_computed", entry_light_.computed()},
+            {"pixels_searched", pixel_points_.searched()},
             {"lonely_pixels", alone_}};
 }
 

@@ -6,34 +6,57 @@
 #include <xxhash.h>
 
 #include "gi/engines/paths/interpolation.h"
+#include "io/core/parallel.h"
 
 namespace lucarne::gi::paths {
 namespace {
 
+constexpr size_t kPixelsAtOnce = 2048;
+
 uint64_t key_of(const CameraView& camera, std::span<const GBufferTexel> texels, const glm::vec3& offset,
-                size_t first) {
-    uint64_t key = XXH3_64bits_withSeed(texels.data(), texels.size_bytes(), first);
+                uint64_t lists) {
+    uint64_t key = XXH3_64bits_withSeed(texels.data(), texels.size_bytes(), lists);
     key = XXH3_64bits_withSeed(&camera, sizeof(camera), key);
     return XXH3_64bits_withSeed(&offset, sizeof(offset), key);
 }
 
 }  // namespace
 
-void PixelPoints::find(const PathsBake& bake, const CameraView& camera, std::span<const GBufferTexel> texels,
-                       std::span<const SurfacePoint> surfaces, const glm::vec3& offset, size_t first) {
-    const size_t count = std::min(surfaces.size() - first, kMostPixels);
-    const uint64_t key = key_of(camera, texels.subspan(first, count), offset, first);
+void PixelPoints::begin(const PathsBake& bake, const CameraView& camera, std::span<const GBufferTexel> texels,
+                        std::span<const SurfacePoint> surfaces, const glm::vec3& offset, uint64_t lists) {
+    surfaces_ = surfaces;
+    offset_ = offset;
+    const uint64_t key = key_of(camera, texels, offset, lists);
     if (bake_ == &bake && key_ == key) return;
-    std::atomic<size_t> alone = 0;
-    sharing_ = find_sharing(bake, count, [&](PointFinder& finder, size_t i) {
-        const SurfacePoint& at = surfaces[first + i];
-        if (!(at.radius > 0)) return false;
-        if (!finder.find(at.position - offset, at.normal)) ++alone;
-        return true;
-    });
-    alone_ = alone;
     bake_ = &bake;
     key_ = key;
+    found_ = {};
+    alone_ = {};
+    searched_ = 0;
+}
+
+void PixelPoints::visit(List list, std::span<const uint32_t> pixels, const Visit& visit) {
+    Sharing& found = found_[static_cast<size_t>(list)];
+    if (found.first.empty()) alone_[static_cast<size_t>(list)] = 0;
+    for (size_t first = 0; first < pixels.size(); first += kMostPixels) {
+        const std::span some = pixels.subspan(first, std::min(pixels.size() - first, kMostPixels));
+        if (found.first.size() != some.size() + 1 || some.size() < pixels.size()) {
+            std::atomic<size_t> alone = 0;
+            found = find_sharing(*bake_, some.size(), [&](PointFinder& finder, size_t i) {
+                const SurfacePoint& at = surfaces_[some[i]];
+                if (!(at.radius > 0)) return false;
+                if (!finder.find(at.position - offset_, at.normal)) ++alone;
+                return true;
+            });
+            alone_[static_cast<size_t>(list)] += alone;
+            searched_ += some.size();
+        }
+        parallel_ranges(some.size(), kPixelsAtOnce, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                if (surfaces_[some[i]].radius > 0) visit(first + i, found.of(i));
+        });
+        if (some.size() < pixels.size()) found = {};
+    }
 }
 
 }  // namespace lucarne::gi::paths

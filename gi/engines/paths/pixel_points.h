@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -11,28 +13,35 @@
 
 namespace lucarne::gi::paths {
 
-/// The gathering points of the pixels of a picture, or of kMostPixels of them at a time. While bake, camera
-/// and surfaces stay as they are, they are found once: a lamp that is dragged costs no search.
+/// The gathering points of the pixels of a picture. While bake, camera and surfaces stay as they are, they
+/// are found once: a lamp that is dragged costs no search.
 class PixelPoints {
  public:
-    static constexpr size_t kMostPixels = size_t{1} << 21;  ///< some 100 MB
+    static constexpr size_t kMostPixels = size_t{1} << 21;  ///< found at a time; some 100 MB
 
-    /// Finds the points of the pixels from `first` on. `surfaces` are those of `texels`, of all pixels.
-    /// `offset`: of the bake's coordinates in those of the frame (Frame::bake_offset).
-    void find(const PathsBake& bake, const CameraView& camera, std::span<const GBufferTexel> texels,
-              std::span<const SurfacePoint> surfaces, const glm::vec3& offset, size_t first);
-    /// The points of pixel `first` + i; empty where it shows no surface or none is near.
-    std::span<const PointShare> of(size_t i) const { return sharing_.of(i); }
-    /// How many pixels there are.
-    size_t count() const { return sharing_.first.size() - 1; }
-    /// How many of these no point reaches.
-    size_t alone() const { return alone_; }
+    /// Begins a picture. `surfaces` are those of `texels`, of all pixels. `offset`: of the bake's coordinates
+    /// in those of the frame (Frame::bake_offset). What was found for the same picture is kept.
+    void begin(const PathsBake& bake, const CameraView& camera, std::span<const GBufferTexel> texels,
+               std::span<const SurfacePoint> surfaces, const glm::vec3& offset, uint64_t lists);
+    /// Calls visit(i, shares) for all pixels[i] that show a surface, from many threads at a time. Empty
+    /// shares: no point is near. `list` names the pixels: they must be the same in every call for one
+    /// picture.
+    using Visit = std::function<void(size_t, std::span<const PointShare>)>;
+    enum class List : uint8_t { grid, rest };
+    void visit(List list, std::span<const uint32_t> pixels, const Visit& visit);
+    /// How many pixels of the picture were searched for.
+    size_t searched() const { return searched_; }
+    /// How many of the pixels that were visited no point reaches.
+    size_t alone() const { return alone_[0] + alone_[1]; }
 
  private:
     const PathsBake* bake_ = nullptr;
     uint64_t key_ = 0;
-    Sharing sharing_;
-    size_t alone_ = 0;
+    std::span<const SurfacePoint> surfaces_;
+    glm::vec3 offset_{0.0f};
+    std::array<Sharing, 2> found_;  ///< by list; of lists of at most kMostPixels
+    std::array<size_t, 2> alone_{};
+    size_t searched_ = 0;
 };
 
 }  // namespace lucarne::gi::paths

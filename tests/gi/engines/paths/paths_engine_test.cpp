@@ -1,10 +1,12 @@
 // The engine over frames: what an edit repeats gives the same picture, bit for bit, as everything anew.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
 #include "gi/engines/paths/options.h"
+#include "gi/gather/gather_options.h"
 #include "gi/registry.h"
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -113,6 +115,29 @@ TEST_F(PathsEngine, AnotherCameraRepeatsNothingButPixels) {
     draw();
     camera_ = look({1.5f, .4f, .5f}, {.4f, 1.3f, .9f}, 48, 48);
     EXPECT_EQ(draw().radiance, draw_anew().radiance);
+}
+
+TEST_F(PathsEngine, PixelsBetweenThoseThatGatherHaveTheirLight) {
+    camera_ = look({.3f, .4f, .5f}, {1.2f, 1.3f, .9f}, 96, 72);
+    options_.settings.set(kOnlyBounce, 1);
+    options_.settings.set(kGatherEvery, 1);
+    const Lit every = draw();
+    for (const int64_t step : {2, 4}) {
+        options_.settings.set(kGatherEvery, step);
+        const Lit between = draw();
+        EXPECT_NE(between.radiance, every.radiance);
+        const ImageMetrics error = compare_images(between.radiance, every.radiance).value();
+        EXPECT_LT(std::abs(error.luminance_error), 3e-3) << step;
+        EXPECT_LT(error.rel_mse, 3e-3) << step;
+        EXPECT_LT(stat("pixels_searched"), 96 * 72 / 2) << step;
+        options_.lights = {lamp(.6f)};
+        EXPECT_EQ(draw().radiance, draw_anew().radiance) << "with the points that were found before";
+        options_.lights = {lamp(1.2f)};
+    }
+    options_.materials[1] = scenes::material(.5f, .4f, 20);
+    const Lit glossy = draw();
+    options_.settings.set(kGatherEvery, 1);
+    EXPECT_EQ(draw().radiance, glossy.radiance) << "lobes need the points of each pixel";
 }
 
 TEST_F(PathsEngine, ColumnsOfAnotherPackingGiveThePictureOfAFreshPreparation) {
