@@ -1,34 +1,16 @@
 #include "gi/host_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
 #include <glm/geometric.hpp>
 
 #include "gi/gl_frame.h"
+#include "gi/native/reflectance.h"
 #include "gi/shared/gbuffer.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi {
-namespace {
-
-/// Decodes albedos as decode_albedo(), whose powers would take most of the time of a picture.
-class AlbedoTable {
- public:
-    AlbedoTable() {
-        for (uint32_t code = 0; code < linear_.size(); ++code) linear_[code] = decode_albedo(code).x;
-    }
-    glm::vec3 operator()(uint32_t code) const {
-        return {linear_[code & 1023u], linear_[code >> 10 & 1023u], linear_[code >> 20 & 1023u]};
-    }
-
- private:
-    std::array<float, 1024> linear_;
-};
-
-}  // namespace
-
 std::vector<Surfel> download_light_surfels(const Frame& frame) {
     assert(frame.gl.cuts.light);
     return frame.gl.pool.download(*frame.gl.cuts.light);
@@ -40,7 +22,7 @@ std::vector<GBufferTexel> download_gbuffer(const Frame& frame) {
 }
 
 std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels) {
-    static const AlbedoTable albedo_of;
+    const auto& linear = native::linear_albedos();
     std::vector<SurfacePoint> points(texels.size());
     parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
@@ -51,7 +33,8 @@ std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<c
             if (!(texel.depth > 0)) continue;
             point.position = texel_position(camera, pixel, texel);
             point.normal = texel_normal(texel);
-            point.albedo = albedo_of(texel.albedo);
+            point.albedo = {linear[texel.albedo & 1023u], linear[texel.albedo >> 10 & 1023u],
+                            linear[texel.albedo >> 20 & 1023u]};
             // A half float may have become 0 or infinite, but there is a surface.
             point.radius = std::clamp(texel_radius(texel), 1e-7f, 65504.0f);
             point.material = texel_material(texel);

@@ -9,6 +9,18 @@
 
 namespace lucarne::gi::native {
 
+/// The channels of albedos by their 10-bit codes (decode_albedo() in surfel_code.h), whose powers would take
+/// most of the time of a picture.
+inline const std::array<float, 1024>& linear_albedos() {
+    static const std::array<float, 1024> kLinear = [] {
+        std::array<float, 1024> values{};
+        for (size_t code = 0; code < values.size(); ++code)
+            values[code] = srgb_to_linear(static_cast<float>(code) / 1023.0f);
+        return values;
+    }();
+    return kLinear;
+}
+
 /// Tables for the diffuse reflectance kd of texels, make_reflectance() in brdf.h.
 struct DiffuseTables {
     std::array<float, 1024> linear;  ///< by the 10-bit code of a channel of PackedSurfel.d
@@ -18,13 +30,7 @@ struct DiffuseTables {
 
     /// `materials`: at least LUCARNE_DEVICE_MATERIALS.
     explicit DiffuseTables(std::span<const Material> materials) {
-        static const std::array<float, 1024> kLinear = [] {
-            std::array<float, 1024> values{};
-            for (size_t code = 0; code < values.size(); ++code)
-                values[code] = srgb_to_linear(static_cast<float>(code) / 1023.0f);
-            return values;
-        }();
-        linear = kLinear;
+        linear = linear_albedos();
         for (size_t i = 0; i < LUCARNE_DEVICE_MATERIALS; ++i) {
             const glm::vec4& diffuse = materials[i].diffuse;
             scale[0][i] = diffuse.x;

@@ -8,10 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "gi/lighting/direct_light.h"
+#include "gi/lighting/surfel_light.h"
 #include "gi/raster/native/native.h"
 #include "gi/scene/environment.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/environment.h"
+#include "gi/shared/flat_surfel.h"
 #include "io/core/parallel.h"
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -143,6 +145,35 @@ class NativeLight : public OnDevice {
         device->use_native_passes(true);
         return radiance_.download_all<glm::vec4>(pixels_);
     }
+    /// The light of the sides of all surfels: front and back of each.
+    struct SurfelSides {
+        std::vector<glm::vec3> irradiance, directions;
+    };
+    SurfelSides surfel_light(bool natively, bool directed = true) {
+        const std::vector<Surfel> surfels = loaded_->pool.download(loaded_->cut);
+        const auto count = static_cast<uint32_t>(surfels.size());
+        std::vector<FlatSurfel> flat;
+        for (const Surfel& surfel : surfels) {
+            // Every fifth lacks what light needs: a radius or a normal.
+            const bool plain = flat.size() % 5 != 0;
+            const bool small = flat.size() % 2 != 0;
+            flat.push_back({surfel.position.x, surfel.position.y, surfel.position.z,
+                            plain || small ? surfel.radius : 0, surfel.area, encode_octahedral(surfel.normal),
+                            plain || !small ? kSurfelHasNormal : 0, surfel.material, kNoEdges});
+        }
+        Buffer held = *device->buffer(count * sizeof(FlatSurfel), "surfels");
+        held.upload_all(flat);
+        Buffer irradiance = *device->buffer(2 * count * sizeof(glm::vec3), "light");
+        Buffer directions = *device->buffer(2 * count * sizeof(glm::vec3), "directions");
+        irradiance.clear(0);
+        directions.clear(0);
+        device->use_native_passes(natively);
+        for (size_t i = 0; i < views_.size(); ++i)
+            EXPECT_TRUE(add_surfel_light(*device, held, count, views_[i], shadows_[i], irradiance,
+                                         directed ? &directions : nullptr));
+        device->use_native_passes(true);
+        return {irradiance.download_all<glm::vec3>(2 * count), directions.download_all<glm::vec3>(2 * count)};
+    }
     template <class Body>
     void with_frame(const Body& body) {
         PassTimes times(*device);
@@ -205,6 +236,34 @@ TEST_F(NativeLight, IsThatOfTheShaders) {
                 EXPECT_GT(dark, pixels_ / 100) << shot.name;
             }
         }
+    }
+}
+
+TEST_F(NativeLight, OfSurfelsIsThatOfTheShaders) {
+    for (const Shot& shot : table()) {
+        if (shot.camera.width == 1) continue;
+        draw(shot);
+        const SurfelSides natively = surfel_light(true), by_shaders = surfel_light(false);
+        ASSERT_EQ(natively.irradiance.size(), by_shaders.irradiance.size());
+        const size_t sides = natively.irradiance.size();
+        size_t others = 0, lit = 0, turned = 0;
+        for (size_t i = 0; i < sides; ++i) {
+            const auto same = [](const glm::vec3& a, const glm::vec3& b) {
+                return glm::distance(a, b) <= 1e-4f * glm::length(b) + 1e-7f;
+            };
+            others += !same(natively.irradiance[i], by_shaders.irradiance[i]) ||
+                      !same(natively.directions[i], by_shaders.directions[i]);
+            lit += by_shaders.irradiance[i].x > 0;
+            turned += i % 2 == 1 && by_shaders.irradiance[i].x > 0;
+        }
+        EXPECT_LE(others, sides / 200) << shot.name;
+        EXPECT_GT(lit, sides / 20) << shot.name;
+        EXPECT_LT(lit, sides) << shot.name;
+        EXPECT_TRUE(turned > 0 || !shot.sky) << shot.name << ": the backs of the floor see the sky below";
+        EXPECT_EQ(surfel_light(true, false).irradiance, natively.irradiance) << "without directions";
+        for (int set = 0; native::use_instruction_set(set); ++set)
+            EXPECT_EQ(surfel_light(true).irradiance, natively.irradiance) << shot.name << ", set " << set;
+        native::use_instruction_set(-1);
     }
 }
 
