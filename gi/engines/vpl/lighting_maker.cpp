@@ -200,8 +200,8 @@ Result<void> LightingMaker::choose_seeds(Frame& frame, Seeds& target) {
     LUCARNE_TRY(timed(frame, "VPL importance", [&] {
         return view_importance_.measure(frame.gl.device, candidates_, candidates_count_);
     }));
-    target.host_lights = draw_candidates(candidates_.host_lights, view_importance_.importance(), s[kVpls],
-                                         mix64(s[kSeed], frame.index));
+    target.host_lights = draw_candidates(candidates_.host_lights, view_importance_.importance(),
+                                         view_importance_.nearness(), s[kVpls], mix64(s[kSeed], frame.index));
     LUCARNE_TRY(frame.gl.device.reserve(target.lights, s[kVpls] * sizeof(VplLight), "virtual point lights"));
     target.lights.upload_all(target.host_lights);
     return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "gi/engines/vpl/bindings.h"
@@ -17,8 +18,9 @@ namespace {
 constexpr uint32_t kCells = 8;  // importons along a side of the picture
 constexpr uint32_t kImportons = kCells * kCells;
 constexpr uint32_t kMapSide = 64;
-constexpr uint64_t kPlacing = 8192;    // stream of random numbers
-constexpr double kByLightAlone = 0.1;  // share of the VPLs
+constexpr uint64_t kPlacing = 8192;  // stream of random numbers
+// Shares of the VPLs. Those chosen by nearness stand where no importon sees them, but where a pixel may.
+constexpr double kByLightAlone = 0.1, kByNearness = 0.2;
 
 Result<AtlasLayout> importon_layout() {
     return atlas_layout(kCells * kMapSide, kImportons);
@@ -47,6 +49,20 @@ float median_distance(const CameraView& camera, const std::vector<VplLight>& imp
     const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
     return *middle;
+}
+
+/// Returns the light of the candidates times a factor each, divided by the sum; nothing if all are 0.
+std::vector<double> weighted(std::span<const VplLight> candidates, std::span<const float> factors) {
+    std::vector<double> weights(candidates.size());
+    double sum = 0;
+    for (size_t i = 0; i < candidates.size(); ++i) {
+        weights[i] =
+            factors[i] > 0 ? leaving_light(candidates[i]) * static_cast<double>(factors[i]) : 0;  // NaN: 0
+        sum += weights[i];
+    }
+    if (!(sum > 0)) return {};
+    for (double& weight : weights) weight /= sum;
+    return weights;
 }
 
 }  // namespace
@@ -96,7 +112,9 @@ Result<void> ViewImportance::look_further(Frame& frame, const Buffer& materials,
     LUCARNE_TRY(fallen);
     LUCARNE_TRY(draw(frame, second_, false, maps));
     camera_ = frame.camera;
-    distance_ = median_distance(frame.camera, first_.seeds.lights.download_all<VplLight>(kImportons));
+    first_.seeds.host_lights = first_.seeds.lights.download_all<VplLight>(kImportons);
+    second_.seeds.host_lights = second_.seeds.lights.download_all<VplLight>(kImportons);
+    distance_ = median_distance(frame.camera, first_.seeds.host_lights);
     return {};
 }
 
@@ -133,28 +151,44 @@ Result<void> ViewImportance::measure(Device& device, const Seeds& candidates, ui
         gather->dispatch(count);
     }
     importance_ = sums_.download_all<float>(count);
+    // Neighbours among the importons are about so far apart.
+    const float apart = distance_ / kCells;
+    nearness_.assign(count, 0);
+    for (const Importons* importons : {&first_, &second_})
+        add_nearness(candidates.host_lights, importons->seeds.host_lights, apart, nearness_);
     return {};
 }
 
-std::vector<VplLight> draw_candidates(std::span<const VplLight> candidates, std::span<const float> importance,
-                                      uint32_t count, uint64_t seed) {
-    std::vector<double> weights(candidates.size());
-    double light_sum = 0, weight_sum = 0;
+void add_nearness(std::span<const VplLight> candidates, std::span<const VplLight> importons, float apart,
+                  std::span<float> sums) {
     for (size_t i = 0; i < candidates.size(); ++i) {
-        const double light = leaving_light(candidates[i]);
-        weights[i] = importance[i] > 0 ? light * static_cast<double>(importance[i]) : 0;  // NaN: 0
-        light_sum += light;
-        weight_sum += weights[i];
+        const glm::vec3 from(candidates[i].position), normal(candidates[i].normal);
+        for (const VplLight& importon : importons) {
+            if (!(importon.flux.w > 0)) continue;
+            const glm::vec3 offset = glm::vec3(importon.position) - from;
+            const float height = glm::dot(normal, offset), distance2 = glm::dot(offset, offset);
+            if (height > 0) sums[i] += height / std::sqrt(distance2) / (distance2 + apart * apart);
+        }
     }
+}
+
+std::vector<VplLight> draw_candidates(std::span<const VplLight> candidates, std::span<const float> importance,
+                                      std::span<const float> nearness, uint32_t count, uint64_t seed) {
+    double light_sum = 0;
+    for (const VplLight& candidate : candidates) light_sum += leaving_light(candidate);
     std::vector<VplLight> drawn(count, kDeadLight);
     if (!(light_sum > 0)) return drawn;
-    const double alone = weight_sum > 0 ? kByLightAlone : 1;
+    const std::vector<double> by_importance = weighted(candidates, importance),
+                              by_nearness = weighted(candidates, nearness);
+    const bool important = !by_importance.empty(), near = important && !by_nearness.empty();
+    const double alone = important ? kByLightAlone : 1, beside = near ? kByNearness : 0;
     const double offset = Random(seed, candidates.size()).uniform();
     double running = 0;  // expected number of VPLs drawn up to here
     uint32_t next = 0;
     for (size_t i = 0; i < candidates.size() && next < count; ++i) {
-        const double probability = alone * leaving_light(candidates[i]) / light_sum +
-                                   (weight_sum > 0 ? (1 - alone) * weights[i] / weight_sum : 0);
+        double probability = alone * leaving_light(candidates[i]) / light_sum;
+        if (near) probability += beside * by_nearness[i];
+        if (important) probability += (1 - alone - beside) * by_importance[i];
         const double expected = count * probability;
         running += expected;
         for (; next < count && next + offset < running; ++next) {

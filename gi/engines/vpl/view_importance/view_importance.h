@@ -40,6 +40,8 @@ class ViewImportance {
     Result<void> measure(Device& device, const Seeds& candidates, uint32_t count);
     /// The importance of each candidate.
     const std::vector<float>& importance() const { return importance_; }
+    /// How near each candidate is to importons that it faces, whether or not it sees them (add_nearness()).
+    const std::vector<float>& nearness() const { return nearness_; }
     /// Returns whether a moving camera still sees about what it saw when the importance was measured.
     bool serves(const CameraView& camera) const;
 
@@ -54,15 +56,22 @@ class ViewImportance {
     Importons first_, second_;  ///< on what the camera sees, and where their importance falls
     Redistribution redistribution_;
     Buffer sums_, openings_;
-    std::vector<float> importance_;
+    std::vector<float> importance_, nearness_;
     CameraView camera_{};
     float distance_ = 0;  ///< from the camera to what it sees, m
 };
 
+/// Adds to `sums` how near each candidate is to importons that it faces, 1/m^2; `apart` is the distance
+/// between importons, m, below which nearness hardly grows.
+void add_nearness(std::span<const VplLight> candidates, std::span<const VplLight> importons, float apart,
+                  std::span<float> sums);
+
 /// Draws `count` of the candidates with probabilities in proportion to their light times their importance,
-/// and scales flux and footprint to match. One in ten is drawn by its light alone, so that light which no
-/// importon sees is not lost. The order of the candidates is kept. `seed` chooses the offset.
+/// and scales flux and footprint to match. Two in ten are drawn by their light times their nearness: a niche
+/// that no importon sees may lie beside what the camera sees, and few VPLs there would each hold so much
+/// light that they show as bright ledges. One in ten is drawn by its light alone, so that no light is
+/// lost. The order of the candidates is kept. `seed` chooses the offset.
 std::vector<VplLight> draw_candidates(std::span<const VplLight> candidates, std::span<const float> importance,
-                                      uint32_t count, uint64_t seed);
+                                      std::span<const float> nearness, uint32_t count, uint64_t seed);
 
 }  // namespace lucarne::gi::vpl

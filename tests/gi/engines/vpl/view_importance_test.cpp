@@ -1,6 +1,8 @@
 // VPLs are chosen by what their light adds to the picture.
 #include "gi/engines/vpl/view_importance/view_importance.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -21,13 +23,13 @@ namespace {
 
 struct Candidates {
     std::vector<VplLight> lights;
-    std::vector<float> importance;
+    std::vector<float> importance, nearness;
 };
 
 /// Candidates of uneven flux; their x coordinate is their number. Every seventh is dead.
 Candidates make_candidates(size_t count) {
     Candidates made;
-    std::mt19937 random(3);
+    std::mt19937 random(3), near(4);
     std::uniform_real_distribution<float> uniform(0.1f, 1);
     for (size_t i = 0; i < count; ++i) {
         const float flux = uniform(random);
@@ -37,6 +39,7 @@ Candidates make_candidates(size_t count) {
                                              glm::vec4(0, 0, 1, 0.01f), glm::vec4(glm::vec3(flux / 6), 1),
                                              glm::vec4(glm::vec3(flux), 1), glm::vec4(0, 0, 1, 0)});
         made.importance.push_back(std::pow(uniform(random), 6.0f));
+        made.nearness.push_back(std::pow(uniform(near), 3.0f));
     }
     return made;
 }
@@ -48,7 +51,7 @@ TEST(DrawCandidates, KeepsFluxAndFootprintOnTheMean) {
     double drawn_flux = 0, drawn_footprint = 0;
     constexpr int kRuns = 400;
     for (int run = 0; run < kRuns; ++run)
-        for (const VplLight& light : draw_candidates(from.lights, from.importance, 64, run)) {
+        for (const VplLight& light : draw_candidates(from.lights, from.importance, from.nearness, 64, run)) {
             drawn_flux += light.flux.x / kRuns;
             drawn_footprint += light.position.w / kRuns;
         }
@@ -58,7 +61,8 @@ TEST(DrawCandidates, KeepsFluxAndFootprintOnTheMean) {
 
 TEST(DrawCandidates, KeepsTheOrderAndPrefersImportantLight) {
     const Candidates from = make_candidates(2000);
-    const auto drawn = draw_candidates(from.lights, from.importance, 256, 1);
+    const std::vector<float> nowhere_near(2000);
+    const auto drawn = draw_candidates(from.lights, from.importance, nowhere_near, 256, 1);
     ASSERT_EQ(drawn.size(), 256u);
     double mean = 0, drawn_mean = 0;
     for (const float value : from.importance) mean += value / 2000;
@@ -70,6 +74,10 @@ TEST(DrawCandidates, KeepsTheOrderAndPrefersImportantLight) {
         drawn_mean += from.importance[static_cast<size_t>(drawn[i].position.x)] / 256;
     }
     EXPECT_GT(drawn_mean, 3 * mean);
+    double beside_mean = 0;  // two in ten are drawn by a nearness that has nothing to do with importance
+    for (const VplLight& light : draw_candidates(from.lights, from.importance, from.nearness, 256, 1))
+        beside_mean += from.importance[static_cast<size_t>(light.position.x)] / 256;
+    EXPECT_GT(beside_mean, 2.5 * mean);
 }
 
 TEST(DrawCandidates, WithoutUsableImportanceTheLightDecides) {
@@ -78,13 +86,61 @@ TEST(DrawCandidates, WithoutUsableImportanceTheLightDecides) {
         from.importance.assign(700, value);
         double flux = 0, drawn_flux = 0;
         for (const VplLight& light : from.lights) flux += light.flux.x;
-        for (const VplLight& light : draw_candidates(from.lights, from.importance, 64, 1))
+        for (const VplLight& light : draw_candidates(from.lights, from.importance, from.nearness, 64, 1))
             drawn_flux += light.flux.x;
         EXPECT_NEAR(drawn_flux, flux, 1e-3 * flux);  // every VPL holds the same share
     }
     const std::vector<VplLight> dead(100, kDeadLight);
-    for (const VplLight& light : draw_candidates(dead, std::vector<float>(100, 1.0f), 8, 1))
-        EXPECT_EQ(light.flux.w, 0);
+    const std::vector<float> even(100, 1.0f);
+    for (const VplLight& light : draw_candidates(dead, even, even, 8, 1)) EXPECT_EQ(light.flux.w, 0);
+}
+
+// A ledge beside what the camera sees, which no importon sees, while most light falls on the roof: by light
+// alone a VPL on the ledge held a hundredth of all light, and showed as a bright line.
+TEST(DrawCandidates, LightInANicheBesideTheViewIsSharedOut) {
+    std::vector<VplLight> lights(3000, make_candidates(2).lights[1]);
+    std::vector<float> importance(3000), nearness(3000);
+    for (size_t i = 0; i < 3000; ++i) {
+        const bool roof = i < 2000, ledge = i >= 2900;
+        lights[i].position.x = static_cast<float>(i);
+        if (roof) lights[i].diffuse *= 50.0f, lights[i].flux *= 50.0f;
+        importance[i] = roof || ledge ? 0 : 1;
+        nearness[i] = roof ? 0 : 1;
+    }
+    double all = 0, ledge = 0;
+    for (const VplLight& light : lights) all += light.flux.x;
+    for (size_t i = 2900; i < 3000; ++i) ledge += lights[i].flux.x;
+    constexpr int kRuns = 100;
+    double drawn = 0, most = 0;
+    for (int run = 0; run < kRuns; ++run)
+        for (const VplLight& light : draw_candidates(lights, importance, nearness, 256, run)) {
+            if (light.position.x < 2900) continue;
+            drawn += light.flux.x / kRuns;
+            most = std::max<double>(most, light.flux.x);
+        }
+    EXPECT_NEAR(drawn, ledge, 0.1 * ledge);
+    EXPECT_LT(most, 0.3 * ledge);
+    EXPECT_LT(most, 1e-3 * all);
+}
+
+TEST(Nearness, FollowsTheDistanceOfImportonsOnTheLitSide) {
+    VplLight light = kDeadLight;
+    light.position = {0, 0, 0, 1};
+    light.normal = {0, 0, 1, 0.01f};
+    light.flux.w = 1;
+    VplLight importon = light;
+    const auto nearness = [&](const glm::vec3& at) {
+        importon.position = glm::vec4(at, 1);
+        std::vector<float> sum(1);
+        add_nearness(std::array{light}, std::array{importon}, 0.5f, sum);
+        return sum[0];
+    };
+    EXPECT_FLOAT_EQ(nearness({0, 0, 1}), 1 / 1.25f);
+    EXPECT_FLOAT_EQ(nearness({3, 0, 4}), 0.8f / 25.25f);
+    EXPECT_EQ(nearness({0, 0, -1}), 0) << "the light is on the other side";
+    EXPECT_EQ(nearness({0, 0, 0}), 0);
+    importon.flux.w = 0;
+    EXPECT_EQ(nearness({0, 0, 1}), 0) << "there is no importon";
 }
 
 class ViewVpls : public OnDevice {
