@@ -1,10 +1,10 @@
 #include "gi/gather/radiosity.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
+#include "gi/gather/places.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
@@ -17,66 +17,6 @@ namespace {
 constexpr size_t kSurfelsATask = 16384;
 /// Micro-buffers of up to so many rays are kept: about 85 MB. More are drawn again for each reflection.
 constexpr size_t kMostRaysHeld = size_t{1} << 24;
-/// A node is thick over this share of its bound. Its surfels see different things, so it is divided until it
-/// is this much smaller than flat ones.
-constexpr float kThickPlace = 0.25f, kThickShare = 0.25f;
-
-/// Calls visit(slot) for the highest slots that are no larger than `size`; stops once there were more than
-/// `most`. Returns their number.
-template <class Visit>
-size_t for_each_slot(const SurfelTree& tree, float size, size_t most, const Visit& visit) {
-    std::vector<uint32_t> waiting{0};
-    size_t found = 0;
-    while (!waiting.empty() && found <= most) {
-        const uint32_t at = waiting.back();
-        waiting.pop_back();
-        const WideNode& node = tree.nodes[at];
-        for (uint32_t k = 0; k < 8; ++k) {
-            if (node.child[k] == kNoChild) continue;
-            const float bound = node.bound[k];
-            const bool flat = node.thickness[k] <= kThickPlace * bound;
-            if (node.child[k] == kLeafChild || bound <= (flat ? size : kThickShare * size)) {
-                ++found;
-                visit(8 * at + k);
-            } else {
-                waiting.push_back(static_cast<uint32_t>(node.child[k]));
-            }
-        }
-    }
-    return found;
-}
-
-/// Calls visit(surfel) for all surfels of a slot.
-template <class Visit>
-void for_each_surfel(const SurfelTree& tree, uint32_t slot, const Visit& visit) {
-    std::vector<uint32_t> waiting{slot};
-    while (!waiting.empty()) {
-        const uint32_t at = waiting.back();
-        waiting.pop_back();
-        const int child = tree.nodes[at / 8].child[at % 8];
-        if (child == kLeafChild) visit(tree.surfels[at]);
-        for (uint32_t k = 0; child >= 0 && k < 8; ++k)
-            if (tree.nodes[static_cast<size_t>(child)].child[k] != kNoChild)
-                waiting.push_back(8 * static_cast<uint32_t>(child) + k);
-    }
-}
-
-/// Draws a surfel of a slot in proportion to area.
-uint32_t draw_surfel(const SurfelTree& tree, uint32_t slot) {
-    Random random(slot);
-    for (;;) {
-        const int child = tree.nodes[slot / 8].child[slot % 8];
-        if (child == kLeafChild) return tree.surfels[slot];
-        const float* areas = &tree.areas[8 * static_cast<size_t>(child)];
-        double sum = 0;
-        uint32_t drawn = 0;
-        for (uint32_t k = 0; k < 8; ++k) {
-            sum += areas[k];
-            if (areas[k] > 0 && random.uniform() * sum < areas[k]) drawn = k;
-        }
-        slot = 8 * static_cast<uint32_t>(child) + drawn;
-    }
-}
 
 glm::vec3 normal_of(const FlatSurfel& surfel) {
     return decode_octahedral(surfel.normal);
@@ -84,36 +24,22 @@ glm::vec3 normal_of(const FlatSurfel& surfel) {
 
 }  // namespace
 
-void Radiosity::choose_places(const LitTree& scene, uint32_t level) {
-    const SurfelTree& tree = scene.tree();
+void Radiosity::choose_places(const LitTree& scene, uint32_t level, uint64_t seed) {
+    Places places = gi::choose_places(scene.tree(), scene.surfels(), size_t{1} << level, seed);
+    place_of_ = std::move(places.place_of);
     points_.clear();
-    place_of_.assign(scene.surfels().size(), kNoSurfel);
-    if (tree.empty()) return;
-    const size_t most = size_t{1} << level;
-    float low = 0, high = 0;
-    for (size_t k = 0; k < 8; ++k)
-        if (tree.nodes[0].child[k] != kNoChild) high = std::max(high, 4 * tree.nodes[0].bound[k]);
-    for (int i = 0; i < 24; ++i) {
-        const float size = 0.5f * (low + high);
-        (for_each_slot(tree, size, most, [](uint32_t) {}) <= most ? high : low) = size;
-    }
-    std::vector<uint32_t> slots;
-    for_each_slot(tree, high, most, [&](uint32_t slot) { slots.push_back(slot); });
-    points_.resize(2 * slots.size());
-    for (uint32_t place = 0; place < slots.size(); ++place) {
-        const uint32_t drawn = draw_surfel(tree, slots[place]);
-        const FlatSurfel& surfel = scene.surfels()[drawn];
+    for (const uint32_t s : places.surfels) {
+        const FlatSurfel& surfel = scene.surfels()[s];
         const glm::vec3 normal = normal_of(surfel);
         for (const float side : {1.0f, -1.0f})
-            points_[2 * place + (side < 0)] = {.position = {surfel.x, surfel.y, surfel.z},
-                                               .lift = surfel.radius,
-                                               .normal = side * normal,
-                                               .seed = 0,
-                                               .viewer = glm::vec3(0.0f),
-                                               .exponent = 0,
-                                               .axis = side * normal,
-                                               .scale = 1};
-        for_each_surfel(tree, slots[place], [&](uint32_t s) { place_of_[s] = place; });
+            points_.push_back({.position = {surfel.x, surfel.y, surfel.z},
+                               .lift = surfel.radius,
+                               .normal = side * normal,
+                               .seed = 0,
+                               .viewer = glm::vec3(0.0f),
+                               .exponent = 0,
+                               .axis = side * normal,
+                               .scale = 1});
     }
 }
 

@@ -13,13 +13,13 @@
 namespace lucarne::gi {
 
 /// Exchanges light between surfels (Ritschel et al. 2009, section 4; Jacobi iteration with push and pull,
-/// Cohen & Wallace 1993). A number of surfels that stand for the nodes of a level of the tree gather; the
-/// surfels of their nodes get the same irradiance, and reflect it each with its own albedo. All reflections
+/// Cohen & Wallace 1993). A number of surfels, one of each node of a level of the tree, gather; those about
+/// them in their plane get the same irradiance, and reflect it each with its own albedo. All reflections
 /// use the same micro-buffers, which are kept: drawing them takes longer than lighting them.
 class Radiosity {
  public:
-    /// Chooses at most 2^level places, each for a node whose surfels are close together and nearly coplanar.
-    void choose_places(const LitTree& scene, uint32_t level);
+    /// Chooses at most 2^level places (places.h), others for each seed.
+    void choose_places(const LitTree& scene, uint32_t level, uint64_t seed);
 
     struct Settings {
         uint32_t bounces = 0;    ///< reflections to compute beyond the own light

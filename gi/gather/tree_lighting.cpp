@@ -67,7 +67,8 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
         LUCARNE_TRY(lit_.set_light(frame, views_, light_gbuffers_));
     }
     const TimedPass pass(frame, "radiosity");
-    if (settings.bounces > 0 || settings.sky) radiosity_.choose_places(lit_, frame.settings[kRadiosityLevel]);
+    if (settings.bounces > 0 || settings.sky)
+        radiosity_.choose_places(lit_, frame.settings[kRadiosityLevel], settings.seed);
     std::vector<SideLight> light;
     LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
     if (frame.stopped()) return {};
