@@ -33,11 +33,17 @@ uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float
     return away <= allowed ? other : slot;
 }
 
+// Returns whether a place sees the back of a slot: it sees the side of the plane on which it is.
+bool shows_back(global const WideNode* nodes, uint slot, float3 place) {
+    return dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - place) >= 0.0f;
+}
+
 // A micro-buffer's place: its start, the axes of its picture, and its set of rays, x and y of all pixels in the unit
 // disc; x is over 1 where a pixel has no ray.
 typedef struct {
     float3 position, normal, start, side, across, axis;
     float scale;
+    bool shown;  // by a picture
     global const float* set;
 } Place;
 
@@ -49,6 +55,7 @@ Place place_of(global const WideNode* nodes, GatherPoint point, global const flo
     place.start = start_of(nodes, point);
     place.axis = (float3)(point.axis.x, point.axis.y, point.axis.z);
     place.scale = point.scale;
+    place.shown = point.viewer.x != 0.0f || point.viewer.y != 0.0f || point.viewer.z != 0.0f;
     float3 axis = place.axis;
     float angle = 6.28318531f * fractions_of(point.seed).s0;
     float3 u = normalize(cross(fabs(axis.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), axis));
@@ -97,16 +104,26 @@ void draw_place(global const WideNode* nodes, Place place, uint seed, Rays* dire
          slots);
 }
 
-// Returns the side that a pixel sees, twice the slot and one more for the back, if it sees any.
+// Returns the side that a pixel sees, twice the slot and one more for the back, or kSeesSky, if a slot was drawn there.
+//
+// A node is drawn as a piece of one plane, so at edges it sticks out a little, and those who look past the edge would see
+// its back. Scans turn their fronts to the room; backs may be a hundred times as bright, outside in the sun. So where a
+// back seems to be seen, the ray is traced surfel by surfel, for points of the picture; for those between which light is
+// exchanged it would take three times as long.
 uint seen_side(global const WideNode* nodes, Place place, const uint* slots, const float* depths, int pixel,
                float3 ray, float3 direction, float lift) {
     float3 away = place.start - place.position;
     float3 lifted = (float3)(dot(away, place.side), dot(away, place.across), dot(away, place.axis));
     uint slot = seen_slot(nodes, slots, slots[pixel], depths[pixel], ray, direction, lifted, place.position, lift,
                           place.scale);
-    // The start sees the side of the plane on which it is.
-    uint back = dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - place.start) < 0.0f ? 0u : 1u;
-    return 2 * slot + back;
+    bool back = shows_back(nodes, slot, place.start);
+    if (back && place.shown && nodes[slot / 8].child[slot % 8] >= 0) {
+        float about = 2.0f * nodes[slot / 8].bound[slot % 8], most = NOTHING;
+        slot = first_surfel(nodes, place.start, direction, fmax(depths[pixel] - about, 0.0f), &most);
+        if (slot == EMPTY) return kSeesSky;
+        back = shows_back(nodes, slot, place.start);
+    }
+    return 2 * slot + (back ? 1u : 0u);
 }
 
 // Returns the specular light of a side in a direction, W/(sr m^2).
@@ -150,11 +167,13 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
             if (!(height > 0.0f)) continue;
             float3 ray = ray_of(place, pixel);
             float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
-            if (slots[pixel] == EMPTY) {
+            uint side = kSeesSky;
+            if (slots[pixel] != EMPTY)
+                side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift);
+            if (side == kSeesSky) {
                 ++empty;
                 if (sky.width > 0) sum += weight * sky_radiance(sky_texels, sky, direction);
             } else if (lit) {
-                uint side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift);
                 sum += weight * vload3(side, light);
                 if (glossy) sum += weight * specular(lobe_light, lobe_directions, side, -direction);
             }
@@ -188,8 +207,8 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
                 ++cast;
                 code = kSeesSky;
                 if (slots[pixel] != EMPTY) {
-                    near += 1.0f / fmax(depths[pixel], 1e-6f);
                     code = seen_side(nodes, place, slots, depths, pixel, ray_of(place, pixel), direction, point.lift);
+                    if (code != kSeesSky) near += 1.0f / fmax(depths[pixel], 1e-6f);
                 }
             }
             sees[j * GRID + i] = code;

@@ -62,9 +62,9 @@ float3 slot_axis(global const WideNode* nodes, uint slot) {
     return (float3)(node->nx[k], node->ny[k], node->nz[k]);
 }
 
-// Returns the slot of the first surfel that a ray meets up to the distance `most`, which becomes its distance; EMPTY
-// if there is none.
-uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, float* most) {
+// Returns the slot of the first surfel that a ray meets beyond the distance `least` and up to `most`, which becomes its
+// distance; EMPTY if there is none.
+uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, float least, float* most) {
     int stack[STACK];
     int top = 0;
     uint found = EMPTY;
@@ -77,7 +77,7 @@ uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, f
         int8 child = vload8(0, node->child);
         float8 along = dx * direction.x + dy * direction.y + dz * direction.z;
         float8 beside = dx * dx + dy * dy + dz * dz - along * along;
-        int8 near = (beside <= bound * bound * 1.0001f) & (along > -bound) & (along < *most + bound);
+        int8 near = (beside <= bound * bound * 1.0001f) & (along > least - bound) & (along < *most + bound);
         int8 go = near & (child >= 0);
         top = push(go, child, stack, top);
         int8 leaf = near & (child == (int8)(kLeafChild));
@@ -85,7 +85,7 @@ uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, f
         float8 nx = vload8(0, node->nx), ny = vload8(0, node->ny), nz = vload8(0, node->nz);
         float8 distance = (dx * nx + dy * ny + dz * nz) / (direction.x * nx + direction.y * ny + direction.z * nz);
         float8 ox = direction.x * distance - dx, oy = direction.y * distance - dy, oz = direction.z * distance - dz;
-        int8 met = leaf & (distance > 0.0f) & (ox * ox + oy * oy + oz * oz <= bound * bound);
+        int8 met = leaf & (distance > least) & (ox * ox + oy * oy + oz * oz <= bound * bound);
         if (!any_of(met)) continue;
         int meets[8];
         float distances[8];
@@ -111,7 +111,7 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
     float3 start = position + normal * point.lift;
     if (dot(viewer, viewer) == 0.0f) return start;
     float distance = 8.0f * point.lift;
-    uint hides = first_surfel(nodes, start, viewer, &distance);
+    uint hides = first_surfel(nodes, start, viewer, 0.0f, &distance);
     if (hides == EMPTY) return start;
     float radius = nodes[hides / 8].bound[hides % 8];
     if (distance > 2.0f * fmax(point.lift, radius)) return start;  // another object in front of it

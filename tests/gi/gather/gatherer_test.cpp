@@ -106,6 +106,24 @@ TEST_F(GathererTest, SheetHidesWhatIsBehindIt) {
     EXPECT_EQ(gather(surfels, light, std::vector{point})[0].x, 0);
 }
 
+// Nodes over the ridge are pieces of level planes, over which a point near the ridge looks: it saw their
+// backs, which the sun lights.
+TEST_F(GathererTest, UnderARoofNoBackOfItIsSeen) {
+    constexpr float kSteep = 0.9f;
+    std::vector<Surfel> roof;
+    for (float y = 0.2f; y < 8; y += 1.3f) {
+        scenes::add_rectangle(roof, {-1, y, -kSteep}, 1.3f * kY, {1, 0, kSteep}, 40, glm::vec3(0.5f));
+        scenes::add_rectangle(roof, {0, y, 0}, 1.3f * kY, {1.3f, 0, -1.3f * kSteep}, 46, glm::vec3(0.5f));
+    }
+    for (Surfel& s : roof)
+        if (s.normal.z > 0) s.normal = -s.normal;
+    const auto surfels = flat::of(roof);
+    const std::vector<SideLight> light(surfels.size(), {glm::vec3(0), glm::vec3(1)});
+    std::vector<GatherPoint> points;
+    for (uint32_t i = 0; i < 512; ++i) points.push_back({{0, 0, -0.04f}, 1e-3f, kY, i, kY, 0, kY, 1});
+    for (const glm::vec4& r : gather(surfels, light, points)) ASSERT_EQ(r.x, 0);
+}
+
 TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
     const auto surfels = flat::noisy_room(3000);
     std::vector<SideLight> light(surfels.size());
