@@ -38,6 +38,13 @@ bool shows_back(global const WideNode* nodes, uint slot, float3 place) {
     return dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - place) >= 0.0f;
 }
 
+// Whether the back of a slot sends much more light than its front, or nothing is known about it.
+bool back_is_bright(global const float* light, uint slot) {
+    if (!light) return true;
+    float3 front = vload3(2 * slot, light), back = vload3(2 * slot + 1, light);
+    return back.x + back.y + back.z > 4.0f * (front.x + front.y + front.z);
+}
+
 // A micro-buffer's place: its start, the axes of its picture, and its set of rays, x and y of all pixels in the unit
 // disc; x is over 1 where a pixel has no ray.
 typedef struct {
@@ -109,15 +116,16 @@ void draw_place(global const WideNode* nodes, Place place, uint seed, Rays* dire
 // A node is drawn as a piece of one plane, so at edges it sticks out a little, and those who look past the edge would see
 // its back. Scans turn their fronts to the room; backs may be a hundred times as bright, outside in the sun. So where a
 // back seems to be seen, the ray is traced surfel by surfel, for points of the picture; for those between which light is
-// exchanged it would take three times as long.
+// exchanged it would take three times as long. Where the light of both sides is known, only backs that are much brighter
+// are traced: in scans whose normals are often reversed, most rays see backs.
 uint seen_side(global const WideNode* nodes, Place place, const uint* slots, const float* depths, int pixel,
-               float3 ray, float3 direction, float lift) {
+               float3 ray, float3 direction, float lift, global const float* light) {
     float3 away = place.start - place.position;
     float3 lifted = (float3)(dot(away, place.side), dot(away, place.across), dot(away, place.axis));
     uint slot = seen_slot(nodes, slots, slots[pixel], depths[pixel], ray, direction, lifted, place.position, lift,
                           place.scale);
     bool back = shows_back(nodes, slot, place.start);
-    if (back && place.shown && nodes[slot / 8].child[slot % 8] >= 0) {
+    if (back && place.shown && nodes[slot / 8].child[slot % 8] >= 0 && back_is_bright(light, slot)) {
         float about = 2.0f * nodes[slot / 8].bound[slot % 8], most = NOTHING;
         slot = first_surfel(nodes, place.start, direction, fmax(depths[pixel] - about, 0.0f), &most);
         if (slot == EMPTY) return kSeesSky;
@@ -169,7 +177,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
             float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
             uint side = kSeesSky;
             if (slots[pixel] != EMPTY)
-                side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift);
+                side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift, lit ? light : 0);
             if (side == kSeesSky) {
                 ++empty;
                 if (sky.width > 0) sum += weight * sky_radiance(sky_texels, sky, direction);
@@ -207,7 +215,7 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
                 ++cast;
                 code = kSeesSky;
                 if (slots[pixel] != EMPTY) {
-                    code = seen_side(nodes, place, slots, depths, pixel, ray_of(place, pixel), direction, point.lift);
+                    code = seen_side(nodes, place, slots, depths, pixel, ray_of(place, pixel), direction, point.lift, 0);
                     if (code != kSeesSky) near += 1.0f / fmax(depths[pixel], 1e-6f);
                 }
             }
