@@ -96,8 +96,12 @@ TEST_F(DroppedFiles, ThatAreProjectsReplaceWhatIsOpen) {
     EXPECT_TRUE(title_comes("1 more")) << title() << log();
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *before) > 2; })) << log();
     EXPECT_THAT(log(), HasSubstr("rooms.json: scans not found: /nowhere/gone.las"));
-    xdo("key Insert sleep 0.5 key alt+F4");
-    EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
+    xdo("key Insert sleep 0.5");
+    // Again if the key comes while something else has the keyboard.
+    EXPECT_TRUE(eventually([&] {
+        if (viewer_->running()) xdo("key alt+F4 sleep 2");
+        return !viewer_->running();
+    }));
     const std::string kept = bytes_of(project);
     for (const std::string& part : {second, place + "/gone.las", std::string("\"flythrough\"")})
         EXPECT_THAT(kept, HasSubstr(part));
