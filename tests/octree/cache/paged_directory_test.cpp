@@ -1,6 +1,10 @@
 // Directories that are read page by page, as those of very large caches are.
 #include "octree/cache/paged_directory.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <iterator>
