@@ -8,8 +8,11 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <string>
 #include <thread>
+#include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
@@ -160,7 +163,9 @@ TEST_F(PagedCache, HasTheNodesOfAWholeDirectoryInAnyOrderWithFewPagesInMemory) {
     for (int n = 0; n < 5000; ++n) {
         const auto i = static_cast<uint32_t>(random_.uniform() * static_cast<double>(nodes.size()));
         ASSERT_TRUE(nodes[i] == expected[i]) << i;
-        if (n % 50 == 0) ASSERT_EQ(paged->load(i).value().records, whole_->load(i).value().records) << i;
+        if (n % 50 == 0) {
+            ASSERT_EQ(paged->load(i).value().records, whole_->load(i).value().records) << i;
+        }
     }
     EXPECT_TRUE(paged->directory_state());
 }
