@@ -190,7 +190,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
 }
 
 // Sets what each pixel of the buffers of `count` points from `first` on sees: a side (seen_side), kSeesSky or
-// kSeesNothing, GRID * GRID for each point; and the mean of 1 over the distance, 1/m.
+// kSeesNothing, GRID * GRID for each point; and the mean of 1 over the distance, 1/m, which is taken as at least the lift.
 kernel void see(global const WideNode* nodes, global const GatherPoint* points, global const float* rays, uint sets,
                 uint first, uint count, global uint* seen, global float* nearness) {
     uint number = get_global_id(0);
@@ -216,7 +216,7 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
                 code = kSeesSky;
                 if (slots[pixel] != EMPTY) {
                     code = seen_side(nodes, place, slots, depths, pixel, ray_of(place, pixel), direction, point.lift, 0);
-                    if (code != kSeesSky) near += 1.0f / fmax(depths[pixel], 1e-6f);
+                    if (code != kSeesSky) near += 1.0f / fmax(depths[pixel], fmax(point.lift, 1e-6f));
                 }
             }
             sees[j * GRID + i] = code;

@@ -1,10 +1,7 @@
 #include "gi/gather/radiosity.h"
 
-#include <utility>
+#include <algorithm>
 
-#include <glm/geometric.hpp>
-
-#include "gi/gather/places.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
@@ -17,30 +14,54 @@ namespace {
 constexpr size_t kSurfelsATask = 16384;
 /// Micro-buffers of up to so many rays are kept: about 85 MB. More are drawn again for each reflection.
 constexpr size_t kMostRaysHeld = size_t{1} << 24;
+/// How near other things are is told by micro-buffers of this side, so many at a time.
+constexpr uint32_t kTestSide = 4;
+constexpr size_t kPointsTested = 65536;
 
-glm::vec3 normal_of(const FlatSurfel& surfel) {
-    return decode_octahedral(surfel.normal);
+/// Returns the points that gather on both sides of places.
+std::vector<GatherPoint> sides_of(const LitTree& scene, const Places& places, uint64_t seed) {
+    std::vector<GatherPoint> points;
+    for (const uint32_t s : places.surfels) {
+        const FlatSurfel& surfel = scene.surfels()[s];
+        const glm::vec3 normal = decode_octahedral(surfel.normal);
+        for (const float side : {1.0f, -1.0f})
+            points.push_back({.position = {surfel.x, surfel.y, surfel.z},
+                              .lift = surfel.radius,
+                              .normal = side * normal,
+                              .seed = static_cast<uint32_t>(mix64(seed, points.size())),
+                              .viewer = glm::vec3(0.0f),
+                              .exponent = 0,
+                              .axis = side * normal,
+                              .scale = 1});
+    }
+    return points;
+}
+
+/// Returns the mean of 1 over the distance of what each point sees, 1/m, or zeros if `stop` becomes true.
+Result<std::vector<float>> nearness(ClDevice& device, Gatherer& gatherer, std::span<const GatherPoint> points,
+                                    uint64_t seed, const std::atomic<bool>* stop) {
+    std::vector<float> result;
+    result.reserve(points.size());
+    MicroBuffers small;
+    for (size_t first = 0; first < points.size() && !(stop && *stop); first += kPointsTested) {
+        const auto some = points.subspan(first, std::min(kPointsTested, points.size() - first));
+        LUCARNE_TRY(gatherer.see(device, some, kTestSide, seed, small, stop));
+        LUCARNE_ASSIGN(const auto seen, small.nearness());
+        result.insert(result.end(), seen.begin(), seen.end());
+    }
+    result.resize(points.size());
+    return result;
 }
 
 }  // namespace
 
-void Radiosity::choose_places(const LitTree& scene, uint32_t level, uint64_t seed) {
-    Places places = gi::choose_places(scene.tree(), scene.surfels(), size_t{1} << level, seed);
-    place_of_ = std::move(places.place_of);
-    points_.clear();
-    for (const uint32_t s : places.surfels) {
-        const FlatSurfel& surfel = scene.surfels()[s];
-        const glm::vec3 normal = normal_of(surfel);
-        for (const float side : {1.0f, -1.0f})
-            points_.push_back({.position = {surfel.x, surfel.y, surfel.z},
-                               .lift = surfel.radius,
-                               .normal = side * normal,
-                               .seed = 0,
-                               .viewer = glm::vec3(0.0f),
-                               .exponent = 0,
-                               .axis = side * normal,
-                               .scale = 1});
-    }
+Result<void> Radiosity::choose_places(ClDevice& device, const LitTree& scene, Gatherer& gatherer,
+                                      uint32_t level, uint64_t seed, const std::atomic<bool>* stop) {
+    const Places places = gi::choose_places(scene.tree(), scene.surfels(), size_t{1} << level, seed);
+    points_ = sides_of(scene, places, seed);
+    LUCARNE_ASSIGN(const auto near, nearness(device, gatherer, points_, seed, stop));
+    sides_ = assign_places(scene.tree(), scene.surfels(), places, near);
+    return {};
 }
 
 Result<void> Radiosity::gather(ClDevice& device, Gatherer& gatherer, Gathered what, const Settings& settings,
@@ -66,21 +87,15 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
     const auto reflectances = scene.reflectances();
     light.assign(own.begin(), own.end());
     std::vector<SideLight> last = light, slots;
-    std::vector<GatherPoint> points = points_;
-    for (size_t i = 0; i < points.size(); ++i)
-        points[i].seed = static_cast<uint32_t>(mix64(settings.seed, i));
-    std::vector<glm::vec3> gathered(points.size(), glm::vec3(0.0f));
-    // Returns what a surfel reflects of the light that its place gathered.
+    std::vector<glm::vec3> gathered(points_.size(), glm::vec3(0.0f));
+    // Returns what a surfel reflects of the light that its places gathered.
     const auto reflected = [&](size_t i) -> SideLight {
-        const uint32_t place = place_of_[i];
-        if (place == kNoSurfel) return {};
-        const bool same = glm::dot(normal_of(scene.surfels()[i]), points[2 * place].normal) >= 0;
-        const glm::vec3 front = kPi * gathered[2 * place + (same ? 0 : 1)];
-        const glm::vec3 back = kPi * gathered[2 * place + (same ? 1 : 0)];
-        return {reflectances[i] * front, reflectances[i] * back};
+        const uint32_t front = sides_[2 * i], back = sides_[2 * i + 1];
+        if (front == kNoSurfel) return {};
+        return {reflectances[i] * (kPi * gathered[front]), reflectances[i] * (kPi * gathered[back])};
     };
     if (settings.sky) {
-        LUCARNE_TRY(gather(device, gatherer, Gathered::sky, settings, points, gathered, stop));
+        LUCARNE_TRY(gather(device, gatherer, Gathered::sky, settings, points_, gathered, stop));
         if (stop && *stop) return {};
         parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {
             for (size_t i = first; i < end; ++i) {
@@ -96,7 +111,7 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
         LUCARNE_TRY(gatherer.set_light(device, slots));
         const SideLobes none;
         LUCARNE_TRY(gatherer.set_lobes(device, bounce == 0 ? scene.lobes() : none));
-        LUCARNE_TRY(gather(device, gatherer, Gathered::light_of_surfels, settings, points, gathered, stop));
+        LUCARNE_TRY(gather(device, gatherer, Gathered::light_of_surfels, settings, points_, gathered, stop));
         if (stop && *stop) return {};
         parallel_ranges(last.size(), kSurfelsATask, [&](size_t first, size_t end) {
             for (size_t i = first; i < end; ++i) {

@@ -9,6 +9,7 @@
 
 #include "gi/gather/gatherer.h"
 #include "gi/gather/lit_tree.h"
+#include "gi/gather/places.h"
 
 namespace lucarne::gi {
 
@@ -18,8 +19,9 @@ namespace lucarne::gi {
 /// use the same micro-buffers, which are kept: drawing them takes longer than lighting them.
 class Radiosity {
  public:
-    /// Chooses at most 2^level places (places.h), others for each seed.
-    void choose_places(const LitTree& scene, uint32_t level, uint64_t seed);
+    /// Chooses at most 2^level places (places.h), others for each seed. Errors: the device failed.
+    Result<void> choose_places(ClDevice& device, const LitTree& scene, Gatherer& gatherer, uint32_t level,
+                               uint64_t seed, const std::atomic<bool>* stop = nullptr);
 
     struct Settings {
         uint32_t bounces = 0;    ///< reflections to compute beyond the own light
@@ -43,7 +45,7 @@ class Radiosity {
 
     MicroBuffers buffers_;
     std::vector<GatherPoint> points_;  ///< two a place: its surfel's front and back
-    std::vector<uint32_t> place_of_;   ///< by surfel; kNoSurfel: it has no disc
+    std::vector<uint32_t> sides_;      ///< by side of surfels: the point that gathers for it (places.h)
 };
 
 }  // namespace lucarne::gi

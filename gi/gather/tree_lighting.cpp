@@ -68,7 +68,9 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
     }
     const TimedPass pass(frame, "radiosity");
     if (settings.bounces > 0 || settings.sky)
-        radiosity_.choose_places(lit_, frame.settings[kRadiosityLevel], settings.seed);
+        LUCARNE_TRY(radiosity_.choose_places(*opencl_, lit_, gatherer_, frame.settings[kRadiosityLevel],
+                                             settings.seed, frame.stop));
+    if (frame.stopped()) return {};
     std::vector<SideLight> light;
     LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
     if (frame.stopped()) return {};
