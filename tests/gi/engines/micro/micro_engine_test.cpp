@@ -109,33 +109,6 @@ TEST_F(MicroEngineTest, PlacesDoNotJoinTheLightOfAWindowWithTheWallAboutIt) {
     EXPECT_NEAR(mean / truth, 1, 0.1);
 }
 
-/// A closed room with shining tapes on a part of its floor, a fifth of a radius above it.
-AnalyticScene floor_with_tapes() {
-    constexpr int kSurfelsATile = 4;
-    constexpr float kTile = 0.1f, kAbove = 0.005f;
-    AnalyticScene scene;
-    scene.surfels = scenes::closed_box(2, 60, glm::vec3(0.5f));
-    for (int column = 1; column < 20; column += 2)
-        for (int row = 1; row < 10; ++row)
-            scenes::add_rectangle(scene.surfels, {kTile * column, kTile * row, kAbove}, kTile * kX,
-                                  kTile * kY, kSurfelsATile, glm::vec3(0.0f), 1);
-    scene.materials = {material(1, 0, 1, 0), material(1, 0, 1, 5)};
-    scene.camera = look(glm::vec3(1, 1, 1.9f), glm::vec3(1, 1.01f, 0), 1.2f, 48);
-    return scene;
-}
-
-// Places under a tape had its light on the floor, and gave it to the floor beside it: the floor shone.
-TEST_F(MicroEngineTest, WhatLiesUnderALampDoesNotGiveItsLightToWhatLiesBesideIt) {
-    AnalyticScene scene = floor_with_tapes();
-    scene.settings.set(kOnlyBounce, 2);
-    scene.settings.set(kMicroBuffer, 24);
-    scene.settings.set(kGatherEvery, 1);
-    scene.settings.set(kRadiosityLevel, 10);
-    scene.settings.set(reference::kSamples, 256);
-    const double truth = mean_luminance(render(scene, "reference").radiance);
-    EXPECT_NEAR(mean_luminance(render(scene).radiance) / truth, 1, 0.03);
-}
-
 TEST_F(MicroEngineTest, FewerGatheringPixelsGiveTheSameLight) {
     AnalyticScene scene = room(material(1, 0, 1, 0));
     const auto all = render(scene);
