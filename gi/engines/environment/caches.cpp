@@ -99,8 +99,10 @@ std::optional<LightByNormal> CacheTiles::light_at(const SurfacePoint& at, const 
     return sum;
 }
 
-void smooth(const CameraView& camera, std::span<Cache> caches) {
-    const CacheTiles tiles(camera, caches);
+void smooth(const CameraView& camera, std::span<Cache> caches, std::span<const float> reaches) {
+    std::vector<Cache> wide(caches.begin(), caches.end());
+    for (size_t i = 0; i < wide.size(); ++i) wide[i].reach = reaches[i];
+    const CacheTiles tiles(camera, wide);
     std::vector<LightByNormal> light(caches.size());
     parallel_ranges(caches.size(), kCachesAPiece, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {

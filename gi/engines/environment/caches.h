@@ -46,9 +46,9 @@ class CacheTiles {
     std::vector<uint32_t> numbers_;
 };
 
-/// Lets caches share their light with those about them, as pixels do, which halves the noise of their few
-/// rays.
-void smooth(const CameraView& camera, std::span<Cache> caches);
+/// Lets caches share their light with those about them, as pixels do, against the noise of their few rays.
+/// `reaches`: how far each shares its own, m.
+void smooth(const CameraView& camera, std::span<Cache> caches, std::span<const float> reaches);
 
 /// Sets the `light` of these `pixels`: the mean radiance for their normals, W/(sr m^2), from the caches.
 /// Returns those for which no cache counts; their light is left as it is.

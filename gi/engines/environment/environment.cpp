@@ -46,6 +46,9 @@ constexpr float kCoarser = 4;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
+/// Caches share their light over this share of their harmonic distance, at most so many radii. Most of it
+/// may come from small windows or patches of sun, which few rays meet: with their reach, walls had blotches.
+constexpr float kShareToSmooth = 0.15f, kReachToSmooth = 8;
 constexpr size_t kMostSecondariesHeld = 262144;  ///< their micro-buffers take 85 MB; more are not kept
 constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
@@ -220,13 +223,16 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
     LUCARNE_ASSIGN(const auto light, lighting_.gatherer().shade(lighting_.opencl(), what, buffers_));
     LUCARNE_ASSIGN(const auto nearness, buffers_.nearness());
     caches_.clear();
+    std::vector<float> reaches;
     for (size_t i = 0; i < primaries.size(); ++i) {
         const SidePlace& place = primaries[i];
-        const float reach = std::clamp(kShareOfDistance / std::max(nearness[i], 1e-9f),
-                                       kLeastReach * place.size, kReach * place.size);
+        const float distance = 1 / std::max(nearness[i], 1e-9f);  // harmonic mean
+        const float reach =
+            std::clamp(kShareOfDistance * distance, kLeastReach * place.size, kReach * place.size);
         caches_.push_back({place.position, place.normal, reach, light[i]});
+        reaches.push_back(std::clamp(kShareToSmooth * distance, reach, kReachToSmooth * place.size));
     }
-    smooth(frame.camera, caches_);
+    smooth(frame.camera, caches_, reaches);
     return {};
 }
 

@@ -1,9 +1,13 @@
 #include "gi/engines/environment/caches.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "io/core/random.h"
 #include "tests/gi/engines/analytic_frame.h"
 
 namespace lucarne::gi::environment {
@@ -63,17 +67,58 @@ TEST(Caches, WhatIsFarOrTurnedAwayOrInFrontDoesNotCount) {
     EXPECT_FALSE(light_at(caches, point_at({0, 0, 0.2f})));
 }
 
-TEST(Caches, SmoothingKeepsEvenLightAndEvensNoise) {
-    std::vector<Cache> even, noisy;
+/// Caches of a square, which have the light that `light` returns for their row and column.
+template <class Light>
+std::vector<Cache> square_of_caches(const Light& light) {
+    std::vector<Cache> caches;
     for (int i = -5; i <= 5; ++i)
-        for (int j = -5; j <= 5; ++j) {
-            even.push_back(cache_at(0.3f * glm::vec3(i, j, 0), 2));
-            noisy.push_back(cache_at(0.3f * glm::vec3(i, j, 0), (i + j) % 2 == 0 ? 1.0f : 3.0f));
+        for (int j = -5; j <= 5; ++j) caches.push_back(cache_at(0.3f * glm::vec3(i, j, 0), light(i, j)));
+    return caches;
+}
+
+/// Returns the largest distance of their light from 2, beyond the margin of the square.
+float most_off(const std::vector<Cache>& caches) {
+    float most = 0;
+    for (const Cache& cache : caches)
+        if (std::max(std::abs(cache.position.x), std::abs(cache.position.y)) < 1)
+            most = std::max(most, std::abs(cache.light.on(cache.normal).x - 2));
+    return most;
+}
+
+TEST(Caches, SmoothingKeepsEvenLightAndSlopesAndEvensNoiseTheMoreTheFartherItIsShared) {
+    const auto board = [](int i, int j) { return (i + j) % 2 == 0 ? 1.0f : 3.0f; };
+    Random random(1);
+    const auto noise = [&](int, int) { return 1 + 2 * static_cast<float>(random.uniform()); };
+    const auto noisy = square_of_caches(noise);
+    std::vector<float> off;
+    for (const float reach : {0.5f, 1.0f, 2.0f}) {
+        auto even = square_of_caches([](int, int) { return 2.0f; });
+        const std::vector<float> reaches(even.size(), reach);
+        smooth(kCamera, even, reaches);
+        EXPECT_LT(most_off(even), 1e-5f) << reach;
+        auto alternating = square_of_caches(board);
+        smooth(kCamera, alternating, reaches);
+        EXPECT_LT(most_off(alternating), 0.8f) << reach;
+        auto evened = noisy;
+        smooth(kCamera, evened, reaches);
+        off.push_back(most_off(evened));
+        auto slope = square_of_caches([](int i, int) { return 2 + 0.1f * static_cast<float>(i); });
+        const auto before = slope;
+        smooth(kCamera, slope, std::vector<float>(slope.size(), std::min(reach, 1.0f)));
+        for (size_t n = 0; n < slope.size(); ++n) {
+            if (std::abs(slope[n].position.x) > 0.5f || std::abs(slope[n].position.y) > 0.5f) continue;
+            EXPECT_NEAR(slope[n].light.on(slope[n].normal).x, before[n].light.on(before[n].normal).x, 1e-4f);
         }
-    smooth(kCamera, even);
-    for (const Cache& cache : even) EXPECT_NEAR(cache.light.on(cache.normal).x, 2, 1e-5);
-    smooth(kCamera, noisy);
-    for (const Cache& cache : noisy) EXPECT_LT(std::abs(cache.light.on(cache.normal).x - 2), 0.8f);
+    }
+    EXPECT_LT(off[1], 0.7f * off[0]);
+    EXPECT_LT(off[2], 0.7f * off[1]);
+}
+
+TEST(Caches, WhatSharesLittleGetsTheLightOfOthersAndKeepsItsOwnForItself) {
+    std::vector<Cache> caches = {cache_at({0, 0, 0}, 1), cache_at({0.4f, 0, 0}, 3)};
+    smooth(kCamera, caches, std::vector<float>{1.0f, 0.1f});
+    EXPECT_NEAR(caches[0].light.on(caches[0].normal).x, 1, 1e-5);
+    EXPECT_LT(caches[1].light.on(caches[1].normal).x, 2.5f);
 }
 
 TEST(Caches, LightFollowsTheNormal) {
