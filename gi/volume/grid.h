@@ -16,6 +16,7 @@ struct Grid {
     glm::vec3 low{0.0f};  ///< m
     float voxel = 1;      ///< side of a voxel, m
     glm::ivec3 size{0};   ///< voxels along each axis
+    bool part = false;    ///< of a larger space: beyond it there may be anything
 
     size_t cells() const {
         return static_cast<size_t>(size.x) * static_cast<size_t>(size.y) * static_cast<size_t>(size.z);
@@ -53,6 +54,27 @@ inline Grid grid_about(const glm::vec3& low, const glm::vec3& high, uint32_t lon
     for (int axis = 0; axis < 3; ++axis)
         grid.size[axis] = static_cast<int>(std::ceil(extent[axis] / grid.voxel - 1e-3f)) + 3;
     grid.low = low - 1.5f * grid.voxel;
+    return grid;
+}
+
+/// Returns a grid of voxels half as large about a place, for half of the longest side of `coarse` along each
+/// axis, or for all of an axis that is shorter. It lies in `coarse` as a whole, and near its border if the
+/// place is there or beyond.
+inline Grid finer_grid(const Grid& coarse, const glm::vec3& position) {
+    Grid grid{.voxel = coarse.voxel / 2, .part = true};
+    const int extent = (std::max({coarse.size.x, coarse.size.y, coarse.size.z}) + 1) / 2;
+    const glm::vec3 most(coarse.size);
+    const glm::vec3 place = glm::clamp(coarse.place(position), glm::vec3(0.0f), most);
+    glm::ivec3 low(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const int cells = std::min(extent, coarse.size[axis]);
+        low[axis] =
+            std::clamp(static_cast<int>(std::lround(place[axis])) - cells / 2, 0, coarse.size[axis] - cells);
+        grid.size[axis] = std::max(2 * cells - 1, 0);
+    }
+    // Half a voxel within whole coarse ones: what lies in the middle of those, as outermost walls do, then
+    // lies in the middle of a fine one, and not in the border of two.
+    grid.low = coarse.position(glm::vec3(low) + 0.25f);
     return grid;
 }
 

@@ -45,9 +45,10 @@ BasicPolygon<T> cut(const BasicPolygon<T>& polygon, int axis, T sign, T low) {
 }
 
 /// Sets the first and the last of `most` layers along an axis that a polygon touches; the last is below the
-/// first if it touches none. Layers count as touched by what is nearer than `touching`, in voxels.
+/// first if it touches none. Layers count as touched by what is nearer than `touching`, in voxels. Returns
+/// whether all of the polygon lies in the layers.
 template <class T>
-void layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching, int& first, int& last) {
+bool layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching, int& first, int& last) {
     T low = polygon.corners[0][axis], high = low;
     for (size_t i = 1; i < polygon.count; ++i) {
         low = std::min(low, polygon.corners[i][axis]);
@@ -57,6 +58,7 @@ void layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching, i
     const auto end = static_cast<T>(most);
     first = static_cast<int>(std::clamp(std::floor(low - touching), T(0), end));
     last = static_cast<int>(std::clamp(std::floor(high + touching), T(-1), end - 1));
+    return low >= -touching && high <= end + touching;
 }
 
 /// Calls body(cell, part) for every voxel of a grid of this size that a polygon touches, with the part of the
@@ -71,10 +73,10 @@ void for_each_voxel_of(const glm::ivec3& size, const BasicPolygon<T>& polygon, T
         return;
     }
     int first = 0, last = 0;
-    layers_of(polygon, axis, size[axis], touching, first, last);
+    const bool inside = layers_of(polygon, axis, size[axis], touching, first, last);
     for (int i = first; i <= last; ++i) {
         cell[axis] = i;
-        if (first == last)
+        if (first == last && inside)
             for_each_voxel_of(size, polygon, touching, body, axis + 1, cell);
         else
             for_each_voxel_of(size,

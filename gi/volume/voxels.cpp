@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/vector_relational.hpp>
 
 #include "gi/shared/brdf.h"
 #include "gi/shared/surfel_code.h"
@@ -60,14 +61,23 @@ VoxelMaker::VoxelMaker(std::span<const FlatSurfel> surfels, const Grid& grid)
 void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) const {
     const FlatSurfel& surfel = surfels_[number];
     const float radius = std::min(surfel.radius, kLargestRadius * grid_.voxel);
+    const glm::vec3 middle(surfel.x, surfel.y, surfel.z), place = grid_.place(middle);
+    const float reach = 1.5f * radius / grid_.voxel + kTouching;  // of the octagon's corners, and some more
+    const glm::vec3 size(grid_.size);
+    const bool inside =
+        glm::all(glm::greaterThan(place, glm::vec3(reach))) && glm::all(glm::lessThan(place, size - reach));
+    if (!inside && (glm::any(glm::lessThan(place, glm::vec3(-reach))) ||
+                    glm::any(glm::greaterThan(place, size + reach))))
+        return;
+    const glm::vec3 normal = decode_octahedral(surfel.normal);
     const size_t first = target.size();
     float sum = 0;
-    for_each_voxel(grid_, {surfel.x, surfel.y, surfel.z}, decode_octahedral(surfel.normal), radius,
-                   [&](const glm::ivec3& cell, float area) {
-                       sum += area;
-                       target.push_back({grid_.number(cell), {number, area}});
-                   });
+    for_each_voxel(grid_, middle, normal, radius, [&](const glm::ivec3& cell, float area) {
+        sum += area;
+        target.push_back({grid_.number(cell), {number, area}});
+    });
     const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
+    if (grid_.part && !inside) sum = std::max(sum, octagon_about(grid_, middle, normal, radius).area());
     for (size_t i = first; i < target.size(); ++i)
         target[i].part.area =
             sum > 0 ? target[i].part.area / sum * whole : whole / static_cast<float>(target.size() - first);

@@ -18,7 +18,8 @@ struct SurfelPart {
 };
 
 /// The surfels of each voxel. A surfel's area is shared out over all voxels that its disc touches, in
-/// proportion to the part of the disc inside them; so the areas of a surfel's parts add up to its own.
+/// proportion to the part of the disc inside them; so the areas of a surfel's parts add up to its own, or to
+/// as much of it as a grid holds that is part of a larger space.
 class Voxels {
  public:
     static constexpr uint32_t kAir = 0xffffffffu;
@@ -34,7 +35,10 @@ class Voxels {
     uint32_t at(const glm::ivec3& cell) const {
         return grid_.holds(cell) ? numbers_[grid_.number(cell)] : kAir;
     }
-    bool is_air(const glm::ivec3& cell) const { return at(cell) == kAir; }
+    /// Beyond a grid that is part of a larger space nothing is known to be air.
+    bool is_air(const glm::ivec3& cell) const {
+        return grid_.holds(cell) ? numbers_[grid_.number(cell)] == kAir : !grid_.part;
+    }
     /// By cell: the occupied voxel, or kAir.
     std::span<const uint32_t> numbers() const { return numbers_; }
     /// The parts of surfels in an occupied voxel, sorted by surfel.

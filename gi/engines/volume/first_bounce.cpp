@@ -1,6 +1,7 @@
 #include "gi/engines/volume/first_bounce.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -30,6 +31,15 @@ constexpr float kLinesOfSight = 48;
 constexpr float kInPlane = 1e-3f;
 /// Lines of sight begin and end at least this far from the sides of a voxel.
 constexpr float kInside = 0.1f;
+/// So many voxels about the inner grid the light from outside of it is kept apart: faces in it interpolate
+/// between those about them.
+constexpr float kMargin = 8;
+
+/// Returns how far beyond a grid a position is along any axis, in voxels; negative inside.
+float beyond_grid(const Grid& grid, const glm::vec3& position) {
+    const glm::vec3 place = grid.place(position), out = glm::max(-place, place - glm::vec3(grid.size));
+    return std::max({out.x, out.y, out.z});
+}
 
 }  // namespace
 
@@ -87,16 +97,25 @@ FirstBounce::FirstBounce(const Space& space) : space_(space), places_(space.face
     });
 }
 
-void FirstBounce::begin(std::span<const glm::vec3> radiance) {
+void FirstBounce::begin(std::span<const glm::vec3> radiance, const Grid* inner) {
     const auto all = space_.faces.all();
-    std::vector<uint32_t> lit;
-    for (uint32_t face = 0; face < all.size(); ++face)
-        if (all[face].area > 0 && luminance(radiance[face]) > 0) lit.push_back(face);
-    std::ranges::stable_sort(lit, {}, [&](uint32_t face) { return all[face].side; });
+    std::array<std::vector<uint32_t>, 2> lit;  // outside of the inner grid, and in it
+    apart_.assign(all.size(), 0);
+    for (uint32_t face = 0; face < all.size(); ++face) {
+        const float beyond = inner ? beyond_grid(*inner, all[face].position) : INFINITY;
+        const bool in = beyond <= 0;
+        apart_[face] = beyond < kMargin ? 1 : 0;
+        if (all[face].area > 0 && luminance(radiance[face]) > 0) lit[in ? 1 : 0].push_back(face);
+    }
     clusters_.clear();
-    clusters_.reserve(2 * lit.size());
-    if (!lit.empty()) add_cluster(radiance, lit);
-    irradiance_.assign(space_.faces.all().size(), glm::vec3(0.0f));
+    clusters_.reserve(2 * (lit[0].size() + lit[1].size()));
+    for (auto& faces : lit) {
+        std::ranges::stable_sort(faces, {}, [&](uint32_t face) { return all[face].side; });
+        if (!faces.empty()) add_cluster(radiance, faces);
+        if (&faces == &lit[0]) outer_clusters_ = clusters_.size();
+    }
+    irradiance_.assign(all.size(), glm::vec3(0.0f));
+    from_outside_.assign(all.size(), glm::vec3(0.0f));
     done_ = 0;
 }
 
@@ -183,11 +202,11 @@ float factor_of_small(const glm::vec3& normal, const glm::vec3& way, const glm::
     return above * facing / (distance2 * distance2) * std::clamp(1 + area / 24 * laplacian, 0.0f, 2.0f);
 }
 
-/// Sets the clusters that light a face if nothing is in between, in the order of the tree.
-void FirstBounce::look(const Face& face, std::vector<Ray>& rays) const {
+/// Sets which of these clusters light a face if nothing is in between, in the order of the trees.
+void FirstBounce::look(const Face& face, size_t first, size_t last, std::vector<Ray>& rays) const {
     rays.clear();
     const float in_plane = kInPlane * space_.grid().voxel;
-    for (size_t i = 0; i < clusters_.size();) {
+    for (size_t i = first; i < last;) {
         const Cluster& cluster = clusters_[i];
         const size_t next = i + 2 * size_t{cluster.faces} - 1;  // beyond all of its clusters
         const glm::vec3 way = cluster.middle - face.position;
@@ -220,10 +239,11 @@ void FirstBounce::look(const Face& face, std::vector<Ray>& rays) const {
     }
 }
 
-/// Returns the irradiance of a face. The clusters are divided into groups of about equal light, neighbours
-/// together, and one line of sight decides for each group: where all of it is seen the sum is exact.
-glm::vec3 FirstBounce::gather(uint32_t number, std::vector<Ray>& rays) const {
-    look(space_.faces.all()[number], rays);
+/// Returns the irradiance of a face by these clusters. They are divided into groups of about equal light,
+/// neighbours together, and one line of sight decides for each group: where all of it is seen the sum is
+/// exact.
+glm::vec3 FirstBounce::gather(uint32_t number, size_t first, size_t last, std::vector<Ray>& rays) const {
+    look(space_.faces.all()[number], first, last, rays);
     float whole = 0;
     for (const Ray& ray : rays) whole += luminance(ray.light);
     const float group = whole / kLinesOfSight;
@@ -254,8 +274,12 @@ bool FirstBounce::advance() {
     const size_t end = std::min(all, done_ + kReceiversAtOnce);
     parallel_ranges(end - std::min(done_, end), kReceiversATask, [&](size_t first, size_t last) {
         std::vector<Ray> rays;
-        for (size_t i = done_ + first; i < done_ + last; ++i)
-            irradiance_[i] = gather(static_cast<uint32_t>(i), rays);
+        for (size_t i = done_ + first; i < done_ + last; ++i) {
+            const auto face = static_cast<uint32_t>(i);
+            const size_t before = apart_[i] != 0 ? outer_clusters_ : 0;
+            from_outside_[i] = gather(face, 0, before, rays);
+            irradiance_[i] = from_outside_[i] + gather(face, before, clusters_.size(), rays);
+        }
     });
     done_ = end;
     return done_ < all;

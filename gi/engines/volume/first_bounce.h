@@ -19,12 +19,15 @@ class FirstBounce {
  public:
     explicit FirstBounce(const Space& space);
 
-    /// Begins with this radiance of the faces, W/(sr m^2), the same in all directions.
-    void begin(std::span<const glm::vec3> radiance);
+    /// Begins with this radiance of the faces, W/(sr m^2), the same in all directions. `inner`: a grid within
+    /// this space, or null.
+    void begin(std::span<const glm::vec3> radiance, const Grid* inner = nullptr);
     /// Gathers at the next few faces. Returns false when all are done.
     bool advance();
     /// The irradiance of all faces, W/m^2, when advance() has returned false.
     std::span<const glm::vec3> irradiance() const { return irradiance_; }
+    /// Likewise: that of faces in and about the inner grid by those outside of it; 0 at others.
+    std::span<const glm::vec3> from_outside() const { return from_outside_; }
 
  private:
     /// A cluster of faces in preorder: its first child follows it, the second one after the first one's
@@ -47,13 +50,16 @@ class FirstBounce {
         glm::vec3 light;  ///< W/m^2
         uint32_t face;    ///< to which the line of sight goes
     };
-    void look(const Face& face, std::vector<Ray>& rays) const;
-    glm::vec3 gather(uint32_t face, std::vector<Ray>& rays) const;
+    void look(const Face& face, size_t first, size_t last, std::vector<Ray>& rays) const;
+    glm::vec3 gather(uint32_t face, size_t first, size_t last, std::vector<Ray>& rays) const;
 
     const Space& space_;
     std::vector<glm::vec3> places_;  ///< by face: a place in the air before it, in units of voxels
-    std::vector<Cluster> clusters_;
-    std::vector<glm::vec3> irradiance_;
+    std::vector<Cluster>
+        clusters_;  ///< two trees: of the faces outside of the inner grid, and of those in it
+    size_t outer_clusters_ = 0;
+    std::vector<uint8_t> apart_;  ///< by face: whether light from outside of the inner grid is kept apart
+    std::vector<glm::vec3> irradiance_, from_outside_;
     size_t done_ = 0;
 };
 

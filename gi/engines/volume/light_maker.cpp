@@ -51,6 +51,23 @@ Basis without_frame(Basis basis) {
     return basis;
 }
 
+/// What the light of surfels is made from.
+Basis of_lights(Basis basis) {
+    basis.focus = {};
+    return without_frame(std::move(basis));
+}
+
+std::vector<glm::vec3> product(std::span<const glm::vec3> reflectances,
+                               std::span<const glm::vec3> irradiance) {
+    std::vector<glm::vec3> light(irradiance.size());
+    for (size_t face = 0; face < light.size(); ++face) light[face] = reflectances[face] * irradiance[face];
+    return light;
+}
+
+void add(std::vector<glm::vec3>& sum, std::span<const glm::vec3> more) {
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
+}
+
 }  // namespace
 
 void LightMaker::begin(Basis basis, const EngineSettings& settings) {
@@ -66,20 +83,24 @@ void LightMaker::begin(Basis basis, const EngineSettings& settings) {
     iterations_ = settings[kIterations];
     views_done_ = 0;
     sweeping_ = false;
-    const auto step = [this](auto function) {
-        return [this, function](Work& work) { return (this->*function)(work); };
+    const auto step = [this](auto function, auto... which) {
+        return [this, function, which...](Work& work) { return (this->*function)(work, which...); };
     };
-    std::vector<Step<Work>> steps = {{"surfels", step(&LightMaker::take_surfels)},
-                                     {"voxels", step(&LightMaker::divide)},
-                                     {"faces", step(&LightMaker::find_faces)},
-                                     {"surfel light", step(&LightMaker::light_surfels)},
-                                     {"sky", step(&LightMaker::sweep_sky)}};
     const bool sweeps = transport_ == Transport::sweeps;
-    if (sweeps && last_ > 0) steps.push_back({"first bounce", step(&LightMaker::gather_first)});
+    const size_t levels = basis_.focus.levels;
+    std::vector<Step<Work>> steps = {{"surfels", step(&LightMaker::take_surfels)}};
+    for (size_t level = 0; level < levels; ++level) {
+        steps.push_back({"voxels", step(&LightMaker::divide, level)});
+        steps.push_back({"faces", step(&LightMaker::find_faces, level)});
+    }
+    steps.push_back({"surfel light", step(&LightMaker::light_surfels)});
+    steps.push_back({"face light", step(&LightMaker::light_faces)});
+    steps.push_back({"sky", step(&LightMaker::sweep_sky)});
+    for (size_t level = 0; sweeps && last_ > 0 && level < levels; ++level)
+        steps.push_back({"first bounce", step(&LightMaker::gather_first, level)});
     for (uint32_t bounce = sweeps ? 2 : 1; bounce <= last_; ++bounce)
-        steps.push_back({"bounce", [this, bounce, sweeps](Work& work) {
-                             return sweeps ? sweep_bounce(work, bounce) : propagate_bounce(work, bounce);
-                         }});
+        steps.push_back(
+            {"bounce", step(sweeps ? &LightMaker::sweep_bounce : &LightMaker::propagate_bounce, bounce)});
     runner_.start(std::move(steps));
 }
 
@@ -93,63 +114,68 @@ Result<void> LightMaker::run(Frame& frame, const Inputs& inputs, const StepBudge
     Work work{frame, inputs};
     LUCARNE_TRY(runner_.run(work, budget, frame.stop));
     if (runner_.running()) return {};
-    target = {basis_, space_, shown_};
+    target = {basis_, {}};
+    for (const Level& level : levels_) target.levels.push_back({level.space, level.shown});
     return {};
 }
 
+/// Takes the surfels, and drops the levels that are made anew.
 Result<StepResult> LightMaker::take_surfels(Work& work) {
     const SpaceBasis now{basis_.cuts.light, basis_.scene.bounds, voxel_count_};
-    if (space_of_ == now) return StepResult::skipped;
+    const bool same = surfels_of_ == now;
+    if (same && focus_ == basis_.focus) return StepResult::skipped;
     const TimedPass pass(work.frame, "surfels");
-    space_of_.reset();
-    own_of_.reset();
     first_of_.reset();
     sweeper_.reset();
-    first_bounce_.reset();
     propagation_.reset();
-    voxel_maker_.reset();
-    face_maker_.reset();
+    levels_.resize(same ? std::min<size_t>(levels_.size(), 1) : 0);
+    levels_.resize(basis_.focus.levels);
+    focus_ = basis_.focus;
+    if (same) return StepResult::done;
+    surfels_of_.reset();
+    surfels_lit_.reset();
     LUCARNE_TRY(surfels_.set_surfels(work.frame));
+    surfels_of_ = now;
     return StepResult::done;
 }
 
-Result<StepResult> LightMaker::divide(Work& work) {
-    if (space_of_) return StepResult::skipped;
+Result<StepResult> LightMaker::divide(Work& work, size_t number) {
+    Level& level = levels_[number];
+    if (level.made) return StepResult::skipped;
     const TimedPass pass(work.frame, "voxels");
-    if (!voxel_maker_) {
+    if (!level.voxel_maker) {
         const auto surfels = surfels_.surfels();
-        voxel_maker_.emplace(surfels, grid_about(surfels, voxel_count_));
+        const Grid grid = number == 0 ? grid_about(surfels, voxel_count_)
+                                      : finer_grid(levels_[number - 1].space->grid(), focus_.centre(number));
+        level.face_maker.reset();
+        level.voxel_maker.emplace(surfels, grid);
     }
-    LUCARNE_ASSIGN(const bool more, voxel_maker_->advance());
+    LUCARNE_ASSIGN(const bool more, level.voxel_maker->advance());
     if (more) return StepResult::again;
-    space_ = std::make_shared<Space>();
-    space_->voxels = voxel_maker_->finish();
-    voxel_maker_.reset();
+    level.space = std::make_shared<Space>();
+    level.space->voxels = level.voxel_maker->finish();
+    level.voxel_maker.reset();
     return StepResult::done;
 }
 
-Result<StepResult> LightMaker::find_faces(Work& work) {
-    if (space_of_) return StepResult::skipped;
+Result<StepResult> LightMaker::find_faces(Work& work, size_t number) {
+    Level& level = levels_[number];
+    if (level.made) return StepResult::skipped;
     const TimedPass pass(work.frame, "faces");
-    if (!face_maker_) face_maker_.emplace(space_->voxels, surfels_.surfels());
-    if (face_maker_->advance()) return StepResult::again;
-    space_->faces = face_maker_->finish();
-    face_maker_.reset();
-    space_->air = Air(space_->voxels);
-    sweeper_.emplace(*space_);
-    first_bounce_.emplace(*space_);
-    space_of_ = SpaceBasis{basis_.cuts.light, basis_.scene.bounds, voxel_count_};
+    if (!level.face_maker) level.face_maker.emplace(level.space->voxels, surfels_.surfels());
+    if (level.face_maker->advance()) return StepResult::again;
+    level.space->faces = level.face_maker->finish();
+    level.face_maker.reset();
+    level.space->air = Air(level.space->voxels);
+    level.first_bounce.emplace(*level.space);
+    level.made = true;
     return StepResult::done;
 }
 
 Result<StepResult> LightMaker::light_surfels(Work& work) {
-    if (own_of_ == without_frame(basis_)) {
-        sources_ = own_;
-        shown_.assign(own_.size(), glm::vec3(0.0f));
-        return StepResult::skipped;
-    }
+    if (surfels_lit_ == of_lights(basis_)) return StepResult::skipped;
     const TimedPass pass(work.frame, "surfel light");
-    own_of_.reset();
+    surfels_lit_.reset();
     first_of_.reset();
     if (views_done_ == 0) LUCARNE_TRY(surfels_.begin_light(work.frame));
     const auto& views = work.inputs.views;
@@ -157,26 +183,50 @@ Result<StepResult> LightMaker::light_surfels(Work& work) {
         LUCARNE_TRY(surfels_.add_light(work.frame, views[views_done_++], work.inputs.gbuffers));
     if (views_done_ < views.size()) return StepResult::again;
     surfels_.end_light(work.frame);
-    light_faces();
-    own_of_ = without_frame(basis_);
+    surfels_lit_ = of_lights(basis_);
     return StepResult::done;
 }
 
-void LightMaker::light_faces() {
+Result<StepResult> LightMaker::light_faces(Work& work) {
+    const TimedPass pass(work.frame, "surfel light");
     const auto own = surfels_.own_light();
     const auto reflectances = surfels_.reflectances();
-    own_ = space_->faces.means<glm::vec3>(
-        [&](uint32_t surfel, bool back) { return back ? own[surfel].back : own[surfel].front; });
-    reflectances_ =
-        space_->faces.means<glm::vec3>([&](uint32_t surfel, bool) { return reflectances[surfel]; });
-    lit_faces_ = static_cast<size_t>(
-        std::ranges::count_if(own_, [](const glm::vec3& light) { return luminance(light) > 0; }));
-    sources_ = own_;
-    shown_.assign(own_.size(), glm::vec3(0.0f));
+    lit_faces_ = 0;
+    for (Level& level : levels_) {
+        if (level.own_of != surfels_lit_) {
+            const Faces& faces = level.space->faces;
+            level.own = faces.means<glm::vec3>(
+                [&](uint32_t surfel, bool back) { return back ? own[surfel].back : own[surfel].front; });
+            level.reflectances =
+                faces.means<glm::vec3>([&](uint32_t surfel, bool) { return reflectances[surfel]; });
+            level.own_of = surfels_lit_;
+        }
+        lit_faces_ += static_cast<size_t>(
+            std::ranges::count_if(level.own, [](const glm::vec3& light) { return luminance(light) > 0; }));
+        level.sources = level.own;
+        level.shown.assign(level.own.size(), glm::vec3(0.0f));
+    }
+    return StepResult::done;
 }
 
 Directions LightMaker::directions(uint32_t bounce) const {
     return even_directions(sweep_count_, mix64(mix64(seed_, basis_.frame), bounce));
+}
+
+/// Begins to carry the sources of all levels, or only what comes from outside.
+void LightMaker::begin_sweep(uint32_t bounce, const Sweeper::Outside& outside, bool dark) {
+    if (!sweeper_) {
+        std::vector<const Space*> spaces;
+        for (const Level& level : levels_) spaces.push_back(level.space.get());
+        sweeper_.emplace(spaces);
+    }
+    std::vector<std::vector<glm::vec3>> none(levels_.size());
+    std::vector<std::span<const glm::vec3>> radiance;
+    for (size_t i = 0; i < levels_.size(); ++i) {
+        if (dark) none[i].assign(levels_[i].sources.size(), glm::vec3(0.0f));
+        radiance.emplace_back(dark ? none[i] : levels_[i].sources);
+    }
+    sweeper_->begin(directions(bounce), radiance, outside);
 }
 
 /// Adds the first reflection of the sky to the sources; pixels show it as direct light.
@@ -184,78 +234,85 @@ Result<StepResult> LightMaker::sweep_sky(Work& work) {
     const GatherSky& sky = work.inputs.sky;
     if (sky.texels.empty()) return StepResult::skipped;
     const TimedPass pass(work.frame, "sky");
-    if (!sweeping_) {
-        const std::vector<glm::vec3> dark(space_->faces.all().size(), glm::vec3(0.0f));
-        sweeper_->begin(directions(0), dark, [&sky, count = sweep_count_](const glm::vec3& way) {
-            return sky_about(sky, way, count);
-        });
-    }
+    if (!sweeping_)
+        begin_sweep(
+            0, [&sky, count = sweep_count_](const glm::vec3& way) { return sky_about(sky, way, count); },
+            true);
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
-    const auto irradiance = smoothed(*space_, sweeper_->irradiance());
-    if (shows_sky_) shown_ = irradiance;
-    const auto light = reflected(irradiance);
-    for (size_t face = 0; face < sources_.size(); ++face) sources_[face] += light[face];
+    for (size_t i = 0; i < levels_.size(); ++i) {
+        Level& level = levels_[i];
+        const auto irradiance = smoothed(*level.space, sweeper_->irradiance(i));
+        if (shows_sky_) level.shown = irradiance;
+        add(level.sources, product(level.reflectances, irradiance));
+    }
     return StepResult::done;
 }
 
-Result<StepResult> LightMaker::gather_first(Work& work) {
+/// A level gathers from its own lit faces; what comes from beyond it, it takes from the level before it.
+Result<StepResult> LightMaker::gather_first(Work& work, size_t number) {
+    Level& level = levels_[number];
     // The sky's light differs in each frame, as its directions do.
     const Basis now = work.inputs.sky.texels.empty() ? without_frame(basis_) : basis_;
     if (first_of_ == now) {
-        add_bounce(1, first_light_);
+        add_bounce(level, 1, level.first_light);
         return StepResult::skipped;
     }
     const TimedPass pass(work.frame, "first bounce");
     first_of_.reset();
-    if (!sweeping_) first_bounce_->begin(sources_);
-    sweeping_ = first_bounce_->advance();
+    const bool last = number + 1 == levels_.size();
+    if (!sweeping_)
+        level.first_bounce->begin(level.sources, last ? nullptr : &levels_[number + 1].space->grid());
+    sweeping_ = level.first_bounce->advance();
     if (sweeping_) return StepResult::again;
-    first_light_ = smoothed(*space_, first_bounce_->irradiance());
-    add_bounce(1, first_light_);
-    first_of_ = now;
+    level.first_light = smoothed(*level.space, level.first_bounce->irradiance());
+    level.from_outside = smoothed(*level.space, level.first_bounce->from_outside());
+    if (number > 0) {
+        const Level& before = levels_[number - 1];
+        const auto light = from_coarse(*before.space, before.from_outside, *level.space);
+        add(level.first_light, light);
+        add(level.from_outside, light);
+    }
+    add_bounce(level, 1, level.first_light);
+    if (last) first_of_ = now;
     return StepResult::done;
 }
 
 Result<StepResult> LightMaker::sweep_bounce(Work& work, uint32_t bounce) {
     const TimedPass pass(work.frame, "sweep");
     if (!sweeping_)
-        sweeper_->begin(directions(bounce), sources_, [](const glm::vec3&) { return glm::vec3(0.0f); });
+        begin_sweep(
+            bounce, [](const glm::vec3&) { return glm::vec3(0.0f); }, false);
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
-    add_bounce(bounce, smoothed(*space_, sweeper_->irradiance()));
+    for (size_t i = 0; i < levels_.size(); ++i)
+        add_bounce(levels_[i], bounce, smoothed(*levels_[i].space, sweeper_->irradiance(i)));
     return StepResult::done;
 }
 
 Result<StepResult> LightMaker::propagate_bounce(Work& work, uint32_t bounce) {
     const TimedPass pass(work.frame, "propagation");
-    if (space_->grid().cells() > kMostLobes)
+    Level& level = levels_.front();
+    if (level.space->grid().cells() > kMostLobes)
         return failed("volume", "so many voxels take too much memory with --transport sh",
                       "choose fewer (--voxels 64)");
-    if (!propagation_) propagation_.emplace(*space_);
+    if (!propagation_) propagation_.emplace(*level.space);
     if (!sweeping_) {
-        propagation_->begin(sources_, iterations_);
+        propagation_->begin(level.sources, iterations_);
         sent_ = luminance(propagation_->under_way());
     }
     sweeping_ = propagation_->advance();
     if (sweeping_) return StepResult::again;
     under_way_ = sent_ > 0 ? luminance(propagation_->under_way()) / sent_ : 0;
-    add_bounce(bounce, propagation_->irradiance());
+    add_bounce(level, bounce, propagation_->irradiance());
     return StepResult::done;
 }
 
 /// Takes over what a bounce brought to the faces: pixels show it if they should, and the next bounce carries
 /// what is reflected.
-void LightMaker::add_bounce(uint32_t bounce, std::span<const glm::vec3> irradiance) {
-    if (bounce >= first_shown_)
-        for (size_t face = 0; face < irradiance.size(); ++face) shown_[face] += irradiance[face];
-    sources_ = reflected(irradiance);
-}
-
-std::vector<glm::vec3> LightMaker::reflected(std::span<const glm::vec3> irradiance) const {
-    std::vector<glm::vec3> light(irradiance.size());
-    for (size_t face = 0; face < light.size(); ++face) light[face] = reflectances_[face] * irradiance[face];
-    return light;
+void LightMaker::add_bounce(Level& level, uint32_t bounce, std::span<const glm::vec3> irradiance) const {
+    if (bounce >= first_shown_) add(level.shown, irradiance);
+    level.sources = product(level.reflectances, irradiance);
 }
 
 }  // namespace lucarne::gi::volume

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,6 +10,7 @@
 
 #include "gi/changes.h"
 #include "gi/engines/volume/first_bounce.h"
+#include "gi/engines/volume/focus.h"
 #include "gi/engines/volume/options.h"
 #include "gi/engines/volume/propagation.h"
 #include "gi/engines/volume/space.h"
@@ -26,14 +28,14 @@ struct Basis {
     LightCutRevisions cuts;
     std::vector<Light> lights;  ///< of the views: samples of lights with a size differ in every frame
     uint64_t frame = 0;         ///< Frame::index, which turns the directions of sweeps
+    Focus focus;
     bool operator==(const Basis&) const = default;
 };
 
 /// Light at the faces of the voxels, which pixels read.
 struct VolumeLight {
-    std::optional<Basis> basis;  ///< none: there is no light yet
-    std::shared_ptr<const Space> space;
-    std::vector<glm::vec3> irradiance;  ///< by face, of the bounces that were asked for, W/m^2
+    std::optional<Basis> basis;    ///< none: there is no light yet
+    std::vector<LitLevel> levels;  ///< the coarsest first; the light is of the bounces that were asked for
 };
 
 /// Makes a VolumeLight, step by step: divides the surfels among voxels, lights them, and carries the light
@@ -48,7 +50,7 @@ class LightMaker {
         const GatherSky& sky;  ///< what else shines in the sky
     };
 
-    /// Starts again.
+    /// Starts again. Levels that are there are kept as far as their basis is the same.
     void begin(Basis basis, const EngineSettings& settings);
     void stop() { runner_.cancel(); }
     bool running() const { return runner_.running(); }
@@ -67,24 +69,40 @@ class LightMaker {
         Frame& frame;
         const Inputs& inputs;
     };
-    /// What the voxels are made from.
+    /// What the surfels are, and the coarsest voxels are made from.
     struct SpaceBasis {
         uint64_t light_cut = 0, bounds = 0;
         uint32_t voxels = 0;
         bool operator==(const SpaceBasis&) const = default;
     };
+    /// Voxels and their light.
+    struct Level {
+        std::shared_ptr<Space> space;
+        std::optional<VoxelMaker> voxel_maker;  ///< while the space is being made
+        std::optional<FaceMaker> face_maker;
+        std::optional<FirstBounce> first_bounce;
+        bool made = false;            ///< the space is whole
+        std::optional<Basis> own_of;  ///< what `own` was made from
+        std::vector<glm::vec3> own;   ///< by face: radiance before any bounce but of the sky, W/(sr m^2)
+        std::vector<glm::vec3> reflectances;  ///< by face, 1/sr
+        std::vector<glm::vec3> first_light;   ///< by face: irradiance by the first bounce, W/m^2
+        std::vector<glm::vec3>
+            from_outside;                ///< by face: that part of it which comes from beyond the next level
+        std::vector<glm::vec3> sources;  ///< by face: radiance that the next bounce carries
+        std::vector<glm::vec3> shown;    ///< by face: irradiance that pixels show, W/m^2
+    };
 
     Result<StepResult> take_surfels(Work& work);
-    Result<StepResult> divide(Work& work);
-    Result<StepResult> find_faces(Work& work);
+    Result<StepResult> divide(Work& work, size_t level);
+    Result<StepResult> find_faces(Work& work, size_t level);
     Result<StepResult> light_surfels(Work& work);
-    void light_faces();
+    Result<StepResult> light_faces(Work& work);
+    void begin_sweep(uint32_t bounce, const Sweeper::Outside& outside, bool dark);
     Result<StepResult> sweep_sky(Work& work);
-    Result<StepResult> gather_first(Work& work);
+    Result<StepResult> gather_first(Work& work, size_t level);
     Result<StepResult> sweep_bounce(Work& work, uint32_t bounce);
     Result<StepResult> propagate_bounce(Work& work, uint32_t bounce);
-    void add_bounce(uint32_t bounce, std::span<const glm::vec3> irradiance);
-    std::vector<glm::vec3> reflected(std::span<const glm::vec3> irradiance) const;
+    void add_bounce(Level& level, uint32_t bounce, std::span<const glm::vec3> irradiance) const;
     Directions directions(uint32_t bounce) const;
 
     StepRunner<Work> runner_;
@@ -97,22 +115,14 @@ class LightMaker {
     uint32_t iterations_ = 64;
 
     LitSurfels surfels_;
-    std::shared_ptr<Space> space_;
-    std::optional<VoxelMaker> voxel_maker_;  ///< of the space that is being made
-    std::optional<FaceMaker> face_maker_;
-    std::optional<FirstBounce> first_bounce_;
+    std::deque<Level> levels_;  ///< the coarsest first
     std::optional<Sweeper> sweeper_;
     std::optional<Propagation> propagation_;
-    std::optional<SpaceBasis> space_of_;
-    std::optional<Basis> own_of_, first_of_;  ///< what own_ and first_light_ were made from
+    std::optional<SpaceBasis> surfels_of_;
+    Focus focus_;                                  ///< of the levels that are there
+    std::optional<Basis> surfels_lit_, first_of_;  ///< what light of surfels and first_light were made from
     size_t views_done_ = 0;
     bool sweeping_ = false;  ///< the present step has begun
-
-    std::vector<glm::vec3> own_;           ///< by face: radiance before any bounce but of the sky, W/(sr m^2)
-    std::vector<glm::vec3> reflectances_;  ///< by face, 1/sr
-    std::vector<glm::vec3> first_light_;   ///< by face: irradiance by the first bounce, W/m^2
-    std::vector<glm::vec3> sources_;       ///< by face: radiance that the next bounce carries
-    std::vector<glm::vec3> shown_;         ///< by face: irradiance that pixels show, W/m^2
     size_t lit_faces_ = 0;
     double sent_ = 0;  ///< luminance of the flux that faces sent out in the present bounce
     double under_way_ = 0;

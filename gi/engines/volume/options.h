@@ -26,6 +26,22 @@ inline constexpr Option<uint32_t> kVoxelCount{{
     .cheaper = -1,
 }};
 
+/// Grids of voxels, each half as wide as the one before it.
+inline constexpr Option<uint32_t> kVolumeLevels{{
+    .kind = OptionKind::integer,
+    .key = "volume_levels",
+    .label = "levels",
+    .help = "Grids of voxels: one about the scene, and finer ones, each half as wide, about what the camera "
+            "sees",
+    .cost = "grids of voxels: each further one has voxels half as large about what the camera sees,\n"
+            "and takes about as long as the first",
+    .least = 1,
+    .most = 4,
+    .slider = {1, 4},
+    .defaults = {int64_t{1}, int64_t{2}, int64_t{2}},
+    .cheaper = -1,
+}};
+
 /// Directions in which light crosses the volume after the first bounce.
 inline constexpr Option<uint32_t> kSweepDirections{{
     .kind = OptionKind::integer,

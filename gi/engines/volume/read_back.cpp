@@ -34,6 +34,12 @@ constexpr float kLeastShare = 0.02f;
 /// Faces with less weight than this in all are too few.
 constexpr float kLeastWeight = 1e-3f;
 
+/// A fine level's light fades out over so many voxels, and ends so many before its border, beyond which it
+/// does not know what there is.
+constexpr float kFading = 4, kUncertain = 2;
+/// A level that ends so many voxels of the whole space or less before its end ends with it.
+constexpr float kSameEnd = 0.5f;
+
 /// Irradiance and weights of faces.
 struct Sum {
     glm::vec3 light{0.0f};
@@ -47,11 +53,21 @@ struct Sum {
 class Reader {
  public:
     Reader(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at)
-        : space_(space), irradiance_(irradiance), at_(at), place_(space.grid().place(at.position)) {}
+        : space_(space), irradiance_(irradiance), at_(at), place_(space.grid().place(at.position)) {
+        find_air();
+    }
+    Reader(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at,
+           const glm::vec3& air)
+        : space_(space),
+          irradiance_(irradiance),
+          at_(at),
+          place_(space.grid().place(at.position)),
+          air_(air),
+          has_air_(true) {}
 
-    Sum read() {
+    Sum read() const {
         Sum sum;
-        if (!find_air()) return nearby();
+        if (!has_air_) return nearby();
         for (int axis = 0; axis < 3; ++axis) {
             const float share = at_.normal[axis] * at_.normal[axis];
             if (share < kLeastShare) continue;
@@ -143,16 +159,15 @@ class Reader {
         return sum;
     }
 
-    /// Finds air before the point: on the way to the viewer, who sees it, or else along its normal. Returns
-    /// whether there is any.
-    bool find_air() {
+    /// Finds air before the point: on the way to the viewer, who sees it, or else along its normal.
+    void find_air() {
         for (const glm::vec3& way : {at_.viewer, at_.normal})
             for (int step = 1; step <= kMostSteps; ++step) {
                 air_ = place_ + 0.5f * static_cast<float>(step) * way;
                 const glm::ivec3 cell(glm::floor(air_));
-                if (space_.grid().holds(cell) && space_.voxels.is_air(cell)) return has_air_ = true;
+                has_air_ = space_.grid().holds(cell) && space_.voxels.is_air(cell);
+                if (has_air_) return;
             }
-        return false;
     }
 
     /// Returns whether a face borders on the air before the point. Rims of walls on the other side of a
@@ -173,21 +188,64 @@ class Reader {
     bool has_air_ = false;
 };
 
-}  // namespace
-
-glm::vec4 irradiance_at(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at) {
-    const glm::vec3 place = space.grid().place(at.position);
-    // Points far outside the grid would not fit into whole numbers.
-    const glm::vec3 size(space.grid().size);
+/// Whether there may be faces about a position. Points far outside the grid do not fit into whole numbers.
+bool is_near(const Grid& grid, const glm::vec3& position) {
+    const glm::vec3 place = grid.place(position), size(grid.size);
     for (int axis = 0; axis < 3; ++axis)
-        if (!(place[axis] > -kLayers - 1 && place[axis] < size[axis] + kLayers + 1)) return glm::vec4(0.0f);
-    const Sum sum = Reader(space, irradiance, at).read();
+        if (!(place[axis] > -kLayers - 1 && place[axis] < size[axis] + kLayers + 1)) return false;
+    return true;
+}
+
+glm::vec4 mean_of(const Sum& sum) {
     return sum.weights > 0 ? glm::vec4(sum.light / sum.weights, 1) : glm::vec4(0.0f);
 }
 
-std::vector<glm::vec4> read_back(const Space& space, std::span<const glm::vec3> irradiance,
-                                 std::span<const SurfacePoint> surfaces, std::span<const Material> materials,
-                                 size_t& missing) {
+/// Returns how much a level counts at a position, 0 to 1: less and less near its border. Where it ends
+/// because the whole space ends there, it counts up to the end.
+float share_of(const Grid& grid, const Grid& whole, const glm::vec3& position) {
+    if (!grid.part) return 1;
+    const glm::vec3 place = grid.place(position), low = grid.place(whole.low),
+                    high = grid.place(whole.position(glm::vec3(whole.size)));
+    const float same = kSameEnd * whole.voxel / grid.voxel;
+    float least = kFading;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto size = static_cast<float>(grid.size[axis]);
+        if (low[axis] < -same) least = std::min(least, place[axis] - kUncertain);
+        if (high[axis] > size + same) least = std::min(least, size - kUncertain - place[axis]);
+    }
+    return std::max(least, 0.0f) / kFading;
+}
+
+/// Returns the irradiance of a point by all levels; in w: 1 if faces were found, else 0.
+glm::vec4 irradiance_by(std::span<const LitLevel> levels, const SurfacePoint& at) {
+    glm::vec4 sum(0.0f);
+    float left = 1;
+    for (size_t i = levels.size(); i-- > 0 && left > 0;) {
+        const float share = share_of(levels[i].space->grid(), levels[0].space->grid(), at.position);
+        if (!(share > 0)) continue;
+        const glm::vec4 found = irradiance_at(*levels[i].space, levels[i].irradiance, at);
+        if (!(found.w > 0)) continue;
+        sum += left * share * found;
+        left *= 1 - share;
+    }
+    return sum.w > 0 ? sum / sum.w : sum;
+}
+
+}  // namespace
+
+glm::vec4 irradiance_at(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at) {
+    return is_near(space.grid(), at.position) ? mean_of(Reader(space, irradiance, at).read())
+                                              : glm::vec4(0.0f);
+}
+
+glm::vec4 irradiance_at(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at,
+                        const glm::vec3& air) {
+    return is_near(space.grid(), at.position) ? mean_of(Reader(space, irradiance, at, air).read())
+                                              : glm::vec4(0.0f);
+}
+
+std::vector<glm::vec4> read_back(std::span<const LitLevel> levels, std::span<const SurfacePoint> surfaces,
+                                 std::span<const Material> materials, size_t& missing) {
     std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
     std::atomic<size_t> none{0};
     parallel_ranges(surfaces.size(), kPixelsAtOnce, [&](size_t first, size_t last) {
@@ -195,7 +253,7 @@ std::vector<glm::vec4> read_back(const Space& space, std::span<const glm::vec3> 
         for (size_t i = first; i < last; ++i) {
             const SurfacePoint& at = surfaces[i];
             if (!(at.radius > 0)) continue;
-            const glm::vec4 found = irradiance_at(space, irradiance, at);
+            const glm::vec4 found = irradiance_by(levels, at);
             without += !(found.w > 0);
             const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
             light[i] = glm::vec4((r.kd + r.ks) / kPi * glm::vec3(found), 0);

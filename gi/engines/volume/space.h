@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,12 @@ struct Space {
     glm::ivec3 cell_before(const Face& face) const {
         return grid().cell(voxels.occupied()[face.voxel]) + step_of(face.side);
     }
+};
+
+/// A space and the light at its faces.
+struct LitLevel {
+    std::shared_ptr<const Space> space;
+    std::vector<glm::vec3> irradiance;  ///< by face, W/m^2
 };
 
 /// Returns the means of values of faces over each face and those beside it that belong to the same surface:

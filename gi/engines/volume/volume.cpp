@@ -1,5 +1,6 @@
 #include "gi/engines/volume/volume.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -19,9 +20,9 @@ namespace lucarne::gi {
 namespace volume {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {&kBounces.info,         &kOnlyBounce.info,   &kVoxelCount.info,
-                                          &kSweepDirections.info, &kTransport.info,    &kIterations.info,
-                                          &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {
+    &kBounces.info,   &kOnlyBounce.info, &kVoxelCount.info,      &kVolumeLevels.info, &kSweepDirections.info,
+    &kTransport.info, &kIterations.info, &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "volume",
                            .label = "Light in a volume",
                            .description = "light carried through voxels: quick and even, without fine detail",
@@ -43,6 +44,7 @@ class VolumeEngine final : public Engine {
     Result<void> render(Frame& frame) override;
 
  private:
+    Focus focus_of(const Frame& frame) const;
     Result<void> make_light(Frame& frame, bool in_parts);
     Result<void> show_light(Frame& frame);
     Result<void> add_direct(Frame& frame, bool any_state);
@@ -73,9 +75,22 @@ Result<void> VolumeEngine::prepare(Frame& frame) {
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }
 
+/// Returns where the levels about the camera are to be: where those of the light that is there are, as long
+/// as that is near enough.
+Focus VolumeEngine::focus_of(const Frame& frame) const {
+    const bool sweeps = frame.settings[kTransport] == Transport::sweeps;
+    const uint32_t levels = sweeps ? frame.settings[kVolumeLevels] : 1;
+    if (levels == 1) return {};
+    const glm::vec3 extent = frame.bounds.max - frame.bounds.min;
+    const Focus now{levels, std::max({extent.x, extent.y, extent.z}), glm::vec3(frame.camera.origin),
+                    glm::vec3(frame.camera.forward)};
+    const bool same_place = light_.basis && light_.basis->scene.bounds == scene_.bounds;
+    return same_place && light_.basis->focus.holds(now) ? light_.basis->focus : now;
+}
+
 /// Brings the light at the faces up to date; in parts, as far as the time of the frame allows.
 Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
-    Basis basis{scene_, cuts_, {}, frame.index};
+    Basis basis{scene_, cuts_, {}, frame.index, focus_of(frame)};
     for (const LightView& view : views_) basis.lights.push_back(view.light);
     if (light_.basis == basis) {
         maker_.stop();
@@ -97,8 +112,7 @@ Result<void> VolumeEngine::show_light(Frame& frame) {
     }
     const TimedPass pass(frame, "light of the volume");
     const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
-    upload_radiance(frame, read_back(*light_.space, light_.irradiance, surfaces,
-                                     device_materials(frame.materials), missing_));
+    upload_radiance(frame, read_back(light_.levels, surfaces, device_materials(frame.materials), missing_));
     return {};
 }
 
@@ -133,13 +147,19 @@ Result<void> VolumeEngine::render(Frame& frame) {
 }
 
 std::vector<std::pair<std::string, double>> VolumeEngine::stats() const {
-    if (!light_.space) return {{"voxels", 0}};
-    const Grid& grid = light_.space->grid();
-    return {{"voxels", grid.cells()},
-            {"occupied_voxels", light_.space->voxels.occupied().size()},
-            {"faces", light_.space->faces.all().size()},
+    if (light_.levels.empty()) return {{"voxels", 0}};
+    size_t cells = 0, occupied = 0, faces = 0;
+    for (const LitLevel& level : light_.levels) {
+        cells += level.space->grid().cells();
+        occupied += level.space->voxels.occupied().size();
+        faces += level.space->faces.all().size();
+    }
+    return {{"voxels", cells},
+            {"occupied_voxels", occupied},
+            {"faces", faces},
             {"lit_faces", maker_.lit_faces()},
-            {"voxel_side", grid.voxel},
+            {"voxel_side", light_.levels.front().space->grid().voxel},
+            {"finest_voxel_side", light_.levels.back().space->grid().voxel},
             {"flux_under_way", maker_.under_way()},
             {"pixels_without_faces", missing_}};
 }

@@ -1,5 +1,7 @@
 // Transport of light between faces: form factors first.
+#include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -22,7 +24,7 @@ glm::vec3 dark(const glm::vec3&) {
 std::vector<glm::vec3> swept(const Space& space, const std::vector<glm::vec3>& radiance, uint64_t seed = 1,
                              const Sweeper::Outside& outside = dark) {
     Sweeper sweeper(space);
-    sweeper.begin(even_directions(64, seed), radiance, outside);
+    sweeper.begin(even_directions(64, seed), std::array{std::span(radiance)}, outside);
     while (sweeper.advance()) {
     }
     return sweeper.irradiance();

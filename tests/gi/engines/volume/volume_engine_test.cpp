@@ -109,6 +109,36 @@ TEST_F(VolumeEngineTest, BouncesLitByAnEvenSkyAreThoseOfAnOpenFurnace) {
     EXPECT_LT(mean, .5 * .5 * .5);
 }
 
+TEST_F(VolumeEngineTest, FinerLevelsFollowTheCameraInSteps) {
+    const SurfelCloud room(scenes::closed_box(2, 60, glm::vec3(.6f)));
+    LitOptions moving = options();
+    moving.settings.set(volume::kVolumeLevels, 3);
+    const auto engine = volume_engine().make();
+    const Lit first = light_up(*device_, *engine, room, camera(), moving);
+    for (const auto& [name, value] : first.stats)
+        if (name == "finest_voxel_side") {
+            EXPECT_NEAR(value, 2 / 29. / 4, 1e-3);
+        }
+    moving.moving = true;
+    moving.light_budget = StepBudget::timed(0);
+    const auto seen_from = [&](const glm::vec3& eye) {
+        return light_up(*device_, *engine, room, look(eye, eye + glm::vec3(.9f, .9f, .4f), 32, 32), moving);
+    };
+    seen_from({.31f, .41f, .51f});
+    EXPECT_FALSE(engine->reads_light_cuts()) << "a little step makes no light";
+    Lit lit = seen_from({.8f, .9f, .5f});
+    EXPECT_TRUE(engine->reads_light_cuts());
+    int frames = 1;
+    for (; engine->reads_light_cuts() && frames < 100; ++frames) lit = seen_from({.8f, .9f, .5f});
+    EXPECT_GT(frames, 3);
+    const auto other = volume_engine().make();
+    moving.moving = false;
+    EXPECT_EQ(
+        lit.radiance,
+        light_up(*device_, *other, room, look({.8f, .9f, .5f}, {1.7f, 1.8f, .9f}, 32, 32), moving).radiance)
+        << "the light of a camera that has come there is that of one that was there";
+}
+
 TEST_F(VolumeEngineTest, TooManyVoxelsForHarmonicsAreAnError) {
     const SurfelCloud room(scenes::closed_box(2, 20, glm::vec3(.6f)));
     auto loaded = load_cloud(*device_, room);

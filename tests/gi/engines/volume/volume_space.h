@@ -12,16 +12,21 @@
 
 namespace lucarne::gi::volume {
 
-/// The voxels of some surfels. The unit cube and what is in it have voxels of 1/29 m.
-inline Space make_space(const std::vector<FlatSurfel>& surfels, uint32_t longest = 32) {
+/// The voxels of some surfels in a grid.
+inline Space make_space(const std::vector<FlatSurfel>& surfels, const Grid& grid) {
     Space space;
-    auto voxels = Voxels::divide(surfels, grid_about(surfels, longest));
+    auto voxels = Voxels::divide(surfels, grid);
     EXPECT_TRUE(voxels);
     if (!voxels) return space;
     space.voxels = std::move(*voxels);
     space.faces = Faces::find(space.voxels, surfels);
     space.air = Air(space.voxels);
     return space;
+}
+
+/// The same in a grid about all of them. The unit cube and what is in it have voxels of 1/29 m.
+inline Space make_space(const std::vector<FlatSurfel>& surfels, uint32_t longest = 32) {
+    return make_space(surfels, grid_about(surfels, longest));
 }
 
 /// The unit cube, seen from inside.
