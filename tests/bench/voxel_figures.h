@@ -58,6 +58,79 @@ inline Result<void> row_of_table_3(gi::Device& device, const VoxelModel& model, 
     return {};
 }
 
+/// Returns how long rasterize_triangles() takes: the median of some runs, after one that makes the shaders.
+inline Result<double> voxels_ms(gi::Device& device, const BenchRun& run,
+                                const gi::volume::MeshTriangles& triangles,
+                                const gi::volume::RasterVoxelOptions& options) {
+    std::vector<double> times;
+    Result<gi::volume::VoxelSet> set = failed("voxels", "not drawn");
+    for (int i = 0; i <= run.frames(5); ++i) {
+        times.push_back(
+            milliseconds_of([&] { set = gi::volume::rasterize_triangles(device, triangles, options); }));
+        if (!set) return tl::make_unexpected(set.error());
+    }
+    times.erase(times.begin());
+    std::ranges::nth_element(times, times.begin() + static_cast<ptrdiff_t>(times.size() / 2));
+    return times[times.size() / 2];
+}
+
+/// Tables 4, 6 and 7 for one mesh: times by what is written, by device and by the size of numbers.
+inline Result<void> tables_of_targets(gi::Device& device, const BenchRun& run, const VoxelModel& model,
+                                      const std::vector<uint32_t>& grids) {
+    using gi::volume::Slicing;
+    // The limits on vertices of the thesis.
+    const auto limited = [](Slicing slicing) {
+        return gi::volume::RasterVoxelOptions{.slicing = slicing,
+                                              .vertices = slicing == Slicing::cut ? 15u : 9u};
+    };
+    heading("table 4: ms by attributes of 32 bits (the thesis: 1, 2, 3 render targets of four components)");
+    fmt::print("{:<8} {:>5} {:<10} {:>10} {:>10} {:>20}\n", "mesh", "grid", "by", "coverage", "+ albedo",
+               "+ albedo, normals");
+    for (const uint32_t voxels : grids) {
+        LUCARNE_ASSIGN(const auto triangles, gi::volume::MeshTriangles::create(model.mesh, 1, voxels));
+        for (const Slicing slicing : {Slicing::cut, Slicing::discard}) {
+            double times[3] = {};
+            for (int i = 0; i < 3; ++i) {
+                auto options = limited(slicing);
+                options.albedo = i > 0;
+                options.normals = i > 1;
+                LUCARNE_ASSIGN(times[i], voxels_ms(device, run, triangles, options));
+            }
+            fmt::print("{:<8} {:>5} {:<10} {:>10.0f} {:>10.0f} {:>20.0f}\n", model.name, voxels,
+                       slicing == Slicing::cut ? "geometry" : "slices", times[0], times[1], times[2]);
+            std::fflush(stdout);
+        }
+    }
+    fmt::print(
+        "the thesis (GTX 285), bunny, geometry; slices: 64 2.36, 2.54, 2.70; 1.33, 1.33, 1.52; 128 3.22, "
+        "4.12, "
+        "5.18; 2.90, 2.90, 3.96; 256 10.2, 17.4, 25.1; 15.8, 15.9, 24.3\n");
+
+    const uint32_t middle = grids[grids.size() / 2];
+    heading(fmt::format("table 6: ms by device, {} at {}", model.name, middle));
+    LUCARNE_ASSIGN(const auto triangles, gi::volume::MeshTriangles::create(model.mesh, 1, middle));
+    LUCARNE_ASSIGN(const double geometry, voxels_ms(device, run, triangles, limited(Slicing::cut)));
+    LUCARNE_ASSIGN(const double slices, voxels_ms(device, run, triangles, limited(Slicing::discard)));
+    fmt::print("{}: geometry {:.0f}, slices {:.0f}; compare with what other devices print\n",
+               device.info().renderer, geometry, slices);
+    fmt::print("the thesis, bunny at 128: G 105M 51.2, 30.8; GTS 9800M 13.5, 6.33; GTX 285 2.66, 1.72\n");
+
+    heading("table 7: ms by the bits of each component, geometry with 15 vertices, all attributes");
+    for (const uint32_t voxels : grids) {
+        LUCARNE_ASSIGN(const auto grid, gi::volume::MeshTriangles::create(model.mesh, 1, voxels));
+        double times[2] = {};
+        for (int i = 0; i < 2; ++i) {
+            auto options = limited(Slicing::cut);
+            options.bits = i == 0 ? 16 : 32;
+            LUCARNE_ASSIGN(times[i], voxels_ms(device, run, grid, options));
+        }
+        fmt::print("{:<8} {:>5}: 16 bits {:.0f}, 32 bits {:.0f}\n", model.name, voxels, times[0], times[1]);
+        std::fflush(stdout);
+    }
+    fmt::print("the thesis, bunny: 64 2.03, 2.04; 128 2.66, 2.80; 256 6.43, 7.25\n");
+    return {};
+}
+
 inline Result<void> figures_of_chapter_6(gi::Device& device, const BenchRun& run) {
     using gi::volume::Slicing;
     LUCARNE_ASSIGN(VoxelModel knot, knot_model());
@@ -80,6 +153,8 @@ inline Result<void> figures_of_chapter_6(gi::Device& device, const BenchRun& run
         "the thesis (GTX 285): bunny, 69451 triangles: 64 1.74 to 2.51 and 1.13 to 1.58 ms, 5.3K voxels; 128 "
         "2.37 to "
         "3.19 and 1.71 to 2.16 ms, 22K; 256 5.92 to 6.98 and 4.92 to 5.48 ms, 89.6K\n");
+
+    LUCARNE_TRY(tables_of_targets(device, run, models.front(), grids));
 
     heading("table 5: voxels by method; (times those at half the grid)");
     fmt::print("{:<8} {:>5} {:>20} {:>20} {:>20} {:>12} {:>14}\n", "mesh", "grid", "slices",
