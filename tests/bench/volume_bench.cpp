@@ -55,6 +55,7 @@ Result<void> bench_light(gi::Device& device, const BenchRun& run) {
     settings.set(gi::kBounces, 2);
     const auto passes = [&](uint32_t voxels) -> Result<Stage::Picture> {
         settings.set(gi::volume::kVoxelCount, voxels);
+        settings.set(gi::volume::kVolumeLevels, 1);      // each further level takes about as long again
         LUCARNE_TRY(stage.picture("direct", settings));  // so that the engine is made anew
         return stage.picture("volume", settings);
     };
