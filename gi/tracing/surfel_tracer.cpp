@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
@@ -35,13 +36,20 @@ bool has_disc(const Surfel& s) {
 
 namespace {
 
+/// Which discs end at lines: few do, and their bits stay in a cache, which surfels do not.
+struct Edges {
+    const std::vector<Surfel>& surfels;
+    std::vector<bool> has;  ///< of each surfel
+};
+
 /// Rejects the hits of a ray beyond the lines of the surfels' discs.
 void reject_beyond_edges(const RTCFilterFunctionNArguments* found) {
-    const auto& surfels = *static_cast<const std::vector<Surfel>*>(found->geometryUserPtr);
+    const auto& edges = *static_cast<const Edges*>(found->geometryUserPtr);
     for (unsigned i = 0; i < found->N; ++i) {
         if (!found->valid[i]) continue;
-        const Surfel& surfel = surfels[RTCHitN_primID(found->hit, found->N, i)];
-        if (surfel.edge == glm::vec3(0.0f)) continue;
+        const unsigned number = RTCHitN_primID(found->hit, found->N, i);
+        if (!edges.has[number]) continue;
+        const Surfel& surfel = edges.surfels[number];
         const glm::vec3 origin(RTCRayN_org_x(found->ray, found->N, i), RTCRayN_org_y(found->ray, found->N, i),
                                RTCRayN_org_z(found->ray, found->N, i)),
             direction(RTCRayN_dir_x(found->ray, found->N, i), RTCRayN_dir_y(found->ray, found->N, i),
@@ -56,6 +64,7 @@ void reject_beyond_edges(const RTCFilterFunctionNArguments* found) {
 struct SurfelTracer::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
+    std::optional<Edges> edges;  ///< none: no disc ends at a line
 
     ~Embree() {
         if (scene) rtcReleaseScene(scene);
@@ -95,7 +104,10 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
             });
             if (std::ranges::any_of(tracer->surfels_,
                                     [](const Surfel& s) { return s.edge != glm::vec3(0.0f); })) {
-                rtcSetGeometryUserData(discs, &tracer->surfels_);
+                embree.edges.emplace(Edges{tracer->surfels_, {}});
+                for (const Surfel& s : tracer->surfels_)
+                    embree.edges->has.push_back(s.edge != glm::vec3(0.0f));
+                rtcSetGeometryUserData(discs, &*embree.edges);
                 rtcSetGeometryIntersectFilterFunction(discs, reject_beyond_edges);
                 rtcSetGeometryOccludedFilterFunction(discs, reject_beyond_edges);
             }
@@ -111,7 +123,8 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
     return tracer;
 }
 
-std::optional<uint32_t> SurfelTracer::nearest(const glm::vec3& origin, const glm::vec3& direction) const {
+std::optional<SurfelTracer::Hit> SurfelTracer::first_hit(const glm::vec3& origin,
+                                                         const glm::vec3& direction) const {
     RTCRayHit query{};
     query.ray = make_ray(origin, direction, std::numeric_limits<float>::infinity());
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -119,7 +132,13 @@ std::optional<uint32_t> SurfelTracer::nearest(const glm::vec3& origin, const glm
     rtcInitIntersectContext(&context);
     rtcIntersect1(embree_->scene, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return query.hit.primID;
+    const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+    return Hit{query.hit.primID, query.ray.tfar, glm::dot(direction, normal) > 0};
+}
+
+std::optional<uint32_t> SurfelTracer::nearest(const glm::vec3& origin, const glm::vec3& direction) const {
+    const auto hit = first_hit(origin, direction);
+    return hit ? std::optional(hit->surfel) : std::nullopt;
 }
 
 namespace {

@@ -36,7 +36,16 @@ class SurfelTracer {
     /// The surfels that can be hit.
     const std::vector<Surfel>& surfels() const { return surfels_; }
 
-    /// Returns the nearest surfel along a ray (`direction` is a unit vector), as an index into surfels().
+    /// What a ray meets first.
+    struct Hit {
+        uint32_t surfel = 0;  ///< index into surfels()
+        float distance = 0;   ///< m
+        bool back = false;    ///< on the side from which its normal points away
+    };
+    /// Returns the first hit of a ray (`direction` is a unit vector) without reading its surfel, which is
+    /// seldom in a cache.
+    std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction) const;
+    /// Returns the nearest surfel along a ray, as an index into surfels().
     std::optional<uint32_t> nearest(const glm::vec3& origin, const glm::vec3& direction) const;
     /// Returns whether a surfel blocks the segment, its ends excluded.
     bool occluded(const glm::vec3& from, const glm::vec3& to) const;

@@ -45,16 +45,11 @@ glm::dvec2 even_point(uint32_t i, uint64_t seed, uint64_t stream) {
 RayHit follow(const tracing::SurfelTracer& tracer, const RayStart& start, const glm::vec3& direction,
               uint32_t count, float& distance) {
     const glm::vec3 origin = tracing::offset_origin(start.position, start.normal, start.radius);
-    const auto found = tracer.nearest(origin, direction);
-    distance = std::numeric_limits<float>::infinity();
-    if (!found) return {};
-    const Surfel& hit = tracer.surfels()[*found];
-    const float slope = glm::dot(direction, hit.normal);
-    const float along = std::abs(slope) > 1e-6f ? glm::dot(hit.position - origin, hit.normal) / slope
-                                                : glm::distance(hit.position, origin);
-    distance = std::max(along, 0.0f);
+    const auto hit = tracer.first_hit(origin, direction);
+    distance = hit ? hit->distance : std::numeric_limits<float>::infinity();
+    if (!hit) return {};
     const float cosine = std::max(glm::dot(direction, start.normal), kLeastCosine);
-    return {2 * *found + (slope > 0 ? 1u : 0u),
+    return {2 * hit->surfel + (hit->back ? 1u : 0u),
             distance * std::sqrt(kPi / (static_cast<float>(count) * cosine))};
 }
 

@@ -35,6 +35,25 @@ TEST(SurfelTracer, RaysPassDiscsBeyondTheirLines) {
     }
 }
 
+TEST(SurfelTracer, FirstHitsHaveADistanceAndASide) {
+    Surfel behind = disc_until(0);
+    behind.position.z = -1;
+    const auto made = SurfelTracer::create({disc_until(0.25f), behind});
+    ASSERT_TRUE(made);
+    const auto below = (*made)->first_hit({0.5f, 0, -3}, {0, 0, 1});
+    ASSERT_TRUE(below);
+    EXPECT_EQ(below->surfel, 1u);
+    EXPECT_TRUE(below->back);
+    EXPECT_NEAR(below->distance, 2, 1e-5);
+    const glm::vec3 aslant(0, 0.6f, -0.8f);
+    const auto above = (*made)->first_hit({0, -0.6f, 0.8f}, aslant);
+    ASSERT_TRUE(above);
+    EXPECT_EQ(above->surfel, 0u);
+    EXPECT_FALSE(above->back);
+    EXPECT_NEAR(above->distance, 1, 1e-5);
+    EXPECT_FALSE((*made)->first_hit({0, 0, 1}, {0, 0, 1}));
+}
+
 TEST(SurfelTracer, LinesOfDiscsThatWereLeftOutDoNotMoveTheOthers) {
     Surfel bare = disc_until(0.5f);
     bare.normal = glm::vec3(0.0f);
