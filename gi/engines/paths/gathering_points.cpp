@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 
 #include "io/core/parallel.h"
@@ -15,8 +16,10 @@ constexpr size_t kMostPoints = 65536;
 constexpr float kLargerSpacing = 1.5f;
 /// The largest angle between a point's normal and a surface that uses its light, as the paper: 10 degrees.
 constexpr float kSpawnTurn = 0.12325684f;  // root of 1 - cos
-constexpr size_t kFewestAtOnce = 16, kMostAtOnce = 512, kCandidatesAtOnce = 32768;
-constexpr size_t kTestsAPiece = 1024, kTracedAPiece = 8;
+constexpr size_t kFewestAtOnce = 16, kMostAtOnce = 512, kCandidatesAtOnce = 65536;
+/// Candidates of a step, in those that the step before would have needed.
+constexpr double kMoreTests = 1.1;
+constexpr size_t kTestsAPiece = 1024, kTracedAPiece = 8, kNormalsAPiece = 16384;
 
 }  // namespace
 
@@ -37,10 +40,8 @@ void PointChooser::start_over() {
     state_.points.clear();
     state_.hits.clear();
     grid_.clear();
-    normals_.clear();
-    const auto& surfels = tracer_.surfels();
-    for (const Surfel& s : surfels)
-        normals_[cell_key(s.position, facing_of(s.normal))] += s.normal * std::max(s.area, 1e-12f);
+    tests_a_pass_ = 1;
+    find_normals();
 }
 
 /// Names a cell as large as the least spacing, for one facing. Opposite facings share it.
@@ -50,30 +51,38 @@ uint64_t PointChooser::cell_key(const glm::vec3& position, uint32_t facing) cons
     return uint64_t{facing} << 60 | bits(cell.z) << 40 | bits(cell.y) << 20 | bits(cell.x);
 }
 
-/// Returns the mean normal about a side: the noise of single normals would multiply the points.
-glm::vec3 PointChooser::smooth_normal(Side side) const {
-    const Surfel& s = tracer_.surfels()[side / 2];
-    const uint32_t facing = facing_of(s.normal);
-    glm::vec3 sum = s.normal * 1e-12f;
-    if (const auto found = normals_.find(cell_key(s.position, facing)); found != normals_.end())
-        sum += found->second;
-    if (const auto found = normals_.find(cell_key(s.position, facing ^ 1)); found != normals_.end())
-        sum -= found->second;
-    // Two sheets may cancel each other.
-    const float length = glm::length(sum);
-    glm::vec3 mean = length > 0 ? sum / length : s.normal;
-    if (glm::dot(mean, s.normal) < 0) mean = -mean;
-    if (glm::dot(mean, s.normal) < 0.5f) mean = s.normal;
-    return side % 2 ? -mean : mean;
+/// Finds the mean normals in cells of the least spacing: the noise of single normals would multiply the
+/// points. Surfels are in the order of their nodes here, so their cells stay in a cache; candidates are not.
+void PointChooser::find_normals() {
+    const auto& surfels = tracer_.surfels();
+    std::unordered_map<uint64_t, glm::vec3> sums;
+    for (const Surfel& s : surfels)
+        sums[cell_key(s.position, facing_of(s.normal))] += s.normal * std::max(s.area, 1e-12f);
+    normals_.resize(surfels.size());
+    parallel_ranges(surfels.size(), kNormalsAPiece, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const Surfel& s = surfels[i];
+            const uint32_t facing = facing_of(s.normal);
+            glm::vec3 sum = s.normal * 1e-12f;
+            if (const auto found = sums.find(cell_key(s.position, facing)); found != sums.end())
+                sum += found->second;
+            if (const auto found = sums.find(cell_key(s.position, facing ^ 1)); found != sums.end())
+                sum -= found->second;
+            // Two sheets may cancel each other.
+            const float length = glm::length(sum);
+            glm::vec3 mean = length > 0 ? sum / length : s.normal;
+            if (glm::dot(mean, s.normal) < 0) mean = -mean;
+            if (glm::dot(mean, s.normal) < 0.5f) mean = s.normal;
+            normals_[i] = mean;
+        }
+    });
 }
 
 bool PointChooser::is_covered(const glm::vec3& position, const glm::vec3& normal) const {
-    bool covered = false;
-    grid_.visit(position, [&](uint32_t i) {
+    return grid_.any_of(position, [&](uint32_t i) {
         const GatheringPoint& point = state_.points[i];
-        if (!covered) covered = error_of(point, point.reach, kSpawnTurn, position, normal) < 1;
+        return error_of(point, point.reach, kSpawnTurn, position, normal) < 1;
     });
-    return covered;
 }
 
 bool PointChooser::restore(State state) {
@@ -102,14 +111,16 @@ bool PointChooser::advance() {
     // tested again one after the other.
     const size_t most = std::clamp(state_.points.size() / 4, kFewestAtOnce, kMostAtOnce);
     const size_t first = state_.next;
-    const size_t last =
-        std::min(order_.size(), first + std::max(kMostAtOnce, kCandidatesAtOnce * most / kMostAtOnce));
+    // Tests after the last one that passes are made again in the next step.
+    const double tests = kMoreTests * tests_a_pass_ * static_cast<double>(most);
+    const size_t last = first + std::min({order_.size() - first, kCandidatesAtOnce,
+                                          std::max(kMostAtOnce, static_cast<size_t>(tests))});
     std::vector<glm::vec3> normals(last - first);
     std::vector<uint8_t> covered(last - first);
     parallel_ranges(last - first, kTestsAPiece, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const Side side = order_[first + i];
-            normals[i] = smooth_normal(side);
+            normals[i] = side % 2 ? -normals_[side / 2] : normals_[side / 2];
             covered[i] = is_covered(tracer_.surfels()[side / 2].position, normals[i]);
         }
     });
@@ -117,6 +128,7 @@ bool PointChooser::advance() {
     for (size_t i = 0; i < covered.size() && passed.size() < most; ++i)
         if (!covered[i]) passed.push_back(i);
     state_.next = passed.size() == most ? first + passed.back() + 1 : last;
+    tests_a_pass_ = static_cast<double>(state_.next - first) / static_cast<double>(passed.size() + 1);
     std::vector<RayHit> hits(passed.size() * rays_);
     std::vector<float> lengths(passed.size());
     parallel_ranges(passed.size(), kTracedAPiece, [&](size_t begin, size_t end) {

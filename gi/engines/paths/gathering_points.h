@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -74,7 +73,7 @@ class PointChooser {
 
  private:
     uint64_t cell_key(const glm::vec3& position, uint32_t facing) const;
-    glm::vec3 smooth_normal(Side side) const;
+    void find_normals();
     bool is_covered(const glm::vec3& position, const glm::vec3& normal) const;
     void start_over();
 
@@ -82,7 +81,8 @@ class PointChooser {
     uint32_t rays_;
     uint64_t seed_;
     std::vector<Side> order_;
-    std::unordered_map<uint64_t, glm::vec3> normals_;  ///< sums over cells of the least spacing
+    std::vector<glm::vec3> normals_;  ///< means about the fronts of surfels
+    double tests_a_pass_ = 1;         ///< candidates in the last step for each that passed its test
     PointGrid grid_;
     State state_;
 };

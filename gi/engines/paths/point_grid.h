@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,15 +25,15 @@ class PointGrid {
         grids_ |= uint64_t{1} << grid_of(reach);
         for_each_cell(position, reach, [&](uint64_t key) { cells_[key].push_back(number); });
     }
-    /// Calls visit(number) for the points that may reach this position, in the same order on every run.
-    template <class Visit>
-    void visit(const glm::vec3& position, const Visit& visit) const {
-        for (int grid = 0; grid < kGrids; ++grid) {
-            if (!(grids_ >> grid & 1)) continue;
+    /// Returns whether test(number) holds for any of the points that may reach this position.
+    template <class Test>
+    bool any_of(const glm::vec3& position, const Test& test) const {
+        for (uint64_t grids = grids_; grids != 0; grids &= grids - 1) {
+            const int grid = std::countr_zero(grids);
             const auto found = cells_.find(key(grid, cell_of(position, grid)));
-            if (found == cells_.end()) continue;
-            for (const uint32_t number : found->second) visit(number);
+            if (found != cells_.end() && std::ranges::any_of(found->second, test)) return true;
         }
+        return false;
     }
 
     /// The number of the grid for points with this reach.
