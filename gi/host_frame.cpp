@@ -21,24 +21,40 @@ std::vector<GBufferTexel> download_gbuffer(const Frame& frame) {
     return gbuffer.texels.download_all<GBufferTexel>(size_t{gbuffer.width} * gbuffer.height);
 }
 
+namespace {
+
+SurfacePoint visible_surface(const CameraView& camera, const GBufferTexel& texel, size_t number) {
+    static const auto& linear = native::linear_albedos();
+    const vec2 pixel(static_cast<float>(number % camera.width), static_cast<float>(number / camera.width));
+    SurfacePoint point;
+    point.viewer = -glm::normalize(view_ray(camera, pixel + 0.5f));
+    if (!(texel.depth > 0)) return point;
+    point.position = texel_position(camera, pixel, texel);
+    point.normal = texel_normal(texel);
+    point.albedo = {linear[texel.albedo & 1023u], linear[texel.albedo >> 10 & 1023u],
+                    linear[texel.albedo >> 20 & 1023u]};
+    // A half float may have become 0 or infinite, but there is a surface.
+    point.radius = std::clamp(texel_radius(texel), 1e-7f, 65504.0f);
+    point.material = texel_material(texel);
+    return point;
+}
+
+}  // namespace
+
 std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels) {
-    const auto& linear = native::linear_albedos();
     std::vector<SurfacePoint> points(texels.size());
     parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
-            const GBufferTexel& texel = texels[i];
-            const vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
-            SurfacePoint& point = points[i];
-            point.viewer = -glm::normalize(view_ray(camera, pixel + 0.5f));
-            if (!(texel.depth > 0)) continue;
-            point.position = texel_position(camera, pixel, texel);
-            point.normal = texel_normal(texel);
-            point.albedo = {linear[texel.albedo & 1023u], linear[texel.albedo >> 10 & 1023u],
-                            linear[texel.albedo >> 20 & 1023u]};
-            // A half float may have become 0 or infinite, but there is a surface.
-            point.radius = std::clamp(texel_radius(texel), 1e-7f, 65504.0f);
-            point.material = texel_material(texel);
-        }
+        for (size_t i = first; i < last; ++i) points[i] = visible_surface(camera, texels[i], i);
+    });
+    return points;
+}
+
+std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels,
+                                           std::span<const uint32_t> pixels) {
+    std::vector<SurfacePoint> points(pixels.size());
+    parallel_ranges(pixels.size(), 4096, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            points[i] = visible_surface(camera, texels[pixels[i]], pixels[i]);
     });
     return points;
 }

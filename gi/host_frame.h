@@ -1,6 +1,7 @@
 // What an engine needs that computes on the host: surfels and G-buffer from the device, radiance to it.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,10 @@ struct SurfacePoint {
 /// Decodes download_gbuffer(): the surface of each pixel. Engines that light these differ in transport and
 /// not in visibility.
 std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels);
+
+/// The same of some pixels, by their numbers.
+std::vector<SurfacePoint> visible_surfaces(const CameraView& camera, std::span<const GBufferTexel> texels,
+                                           std::span<const uint32_t> pixels);
 
 /// Sets the radiance of all pixels (rgb W/(sr m^2), row 0 on top).
 void upload_radiance(Frame& frame, std::span<const glm::vec4> radiance);

@@ -10,8 +10,6 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr float kLeastWeight = 0.05f;
-
 /// Returns how well the light of one surface point stands for that of another, 0 to 1. `reach`: the distance
 /// from their planes within which they are one surface, m.
 float likeness(const SurfacePoint& a, const SurfacePoint& b, float reach) {
@@ -60,11 +58,11 @@ std::vector<uint32_t> upsample(const CameraView& camera, std::span<const Surface
                     if (column < 0 || row < 0 || column >= columns || row >= rows) continue;
                     const uint32_t other =
                         grid.pixel(static_cast<uint32_t>(column), static_cast<uint32_t>(row));
-                    const float weight = (share + 1e-3f) * likeness(at, surfaces[other], reach);
+                    const float weight = (share + kLeastUpsampleShare) * likeness(at, surfaces[other], reach);
                     sum += weight * gathered[static_cast<size_t>(row * columns + column)];
                     weights += weight;
                 }
-                if (weights >= kLeastWeight)
+                if (weights >= kLeastUpsampleWeight)
                     light[pixel] = sum / weights;
                 else
                     missing[y].push_back(static_cast<uint32_t>(pixel));

@@ -22,6 +22,10 @@ struct GatherGrid {
     uint32_t pixel(uint32_t column, uint32_t row) const;
 };
 
+/// Of the weights with which places count for a pixel: the least sum with which they do, and what is added to
+/// the share of each, so that one that is far away counts where no other does.
+inline constexpr float kLeastUpsampleWeight = 0.05f, kLeastUpsampleShare = 1e-3f;
+
 /// Interpolates light between the pixels that gathered it (joint bilateral upsampling: Sloan et al. 2007;
 /// Ritschel et al. 2009, section 2.4): of the four places about a pixel, those count that lie in its plane
 /// and have its normal. Sets `light` of all pixels from `gathered` (by row and column of the grid). Returns

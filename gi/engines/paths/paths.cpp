@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/entry_light.h"
 #include "gi/engines/paths/interpolation.h"
+#include "gi/engines/paths/native/grid_light.h"
 #include "gi/engines/paths/options.h"
 #include "gi/engines/paths/pixel_points.h"
 #include "gi/engines/paths/relight.h"
@@ -27,8 +27,8 @@
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
 #include "gi/lighting/light_options.h"
+#include "gi/native/reflectance.h"
 #include "gi/shared/brdf.h"
-#include "io/core/parallel.h"
 
 namespace lucarne::gi {
 namespace paths {
@@ -44,8 +44,6 @@ constexpr EngineInfo kInfo{.name = "paths",
                            .options = kOptions,
                            .needs = {.light_cut = true, .light_views = true},
                            .precomputes = &kPathsPrecomputes};
-
-constexpr size_t kPixelsATask = 2048;
 
 class PathsEngine final : public Engine {
  public:
@@ -70,8 +68,8 @@ class PathsEngine final : public Engine {
     };
     Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const ArrivingLight* arriving_light(Frame& frame, std::span<const Material> materials);
-    std::vector<glm::vec4> irradiance_of_pixels(const Frame& frame, std::span<const SurfacePoint> surfaces,
-                                                uint32_t step);
+    void add_by_grid(const Frame& frame, std::span<const Material> materials,
+                     std::span<const GBufferTexel> texels, uint32_t step, std::span<glm::vec4> radiance);
     void add_indirect(Frame& frame);
 
     SceneRevisions scene_;
@@ -158,27 +156,32 @@ const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const M
     return &*arriving_;
 }
 
-/// Sets the irradiance of all pixels, W/m^2: found at one pixel in each square of `step`, and between these
-/// interpolated where they lie in one plane.
-std::vector<glm::vec4> PathsEngine::irradiance_of_pixels(const Frame& frame,
-                                                         std::span<const SurfacePoint> surfaces,
-                                                         uint32_t step) {
+/// Finds the light at one pixel in each square of `step`, and adds what all pixels reflect: between these it
+/// is interpolated where they lie in one plane.
+void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> materials,
+                              std::span<const GBufferTexel> texels, uint32_t step,
+                              std::span<glm::vec4> radiance) {
     // The places do not move from frame to frame, or their points would have to be found again.
     const GatherGrid grid{frame.camera.width, frame.camera.height, step, step / 2, step / 2};
     std::vector<uint32_t> pixels;
     for (uint32_t row = 0; row < grid.rows(); ++row)
         for (uint32_t column = 0; column < grid.columns(); ++column)
             pixels.push_back(grid.pixel(column, row));
-    std::vector<glm::vec4> found(pixels.size());
-    pixel_points_.visit(PixelPoints::List::grid, pixels, [&](size_t i, std::span<const PointShare> about) {
-        found[i] = glm::vec4(irradiance_of(about, irradiance_), 0);
+    const std::vector<SurfacePoint> places = visible_surfaces(frame.camera, texels, pixels);
+    std::vector<native::GridLight> lights(pixels.size());
+    pixel_points_.visit(PixelPoints::List::grid, places, [&](size_t i, std::span<const PointShare> about) {
+        lights[i] = {places[i].position - glm::vec3(frame.camera.origin), 1, places[i].normal,
+                     irradiance_of(about, irradiance_)};
     });
-    std::vector<glm::vec4> all(surfaces.size());
-    const std::vector<uint32_t> rest = upsample(frame.camera, surfaces, grid, found, all);
-    pixel_points_.visit(PixelPoints::List::rest, rest, [&](size_t i, std::span<const PointShare> about) {
-        all[rest[i]] = glm::vec4(irradiance_of(about, irradiance_), 0);
+    const gi::native::DiffuseTables reflectances(materials);
+    const std::vector<uint32_t> rest =
+        native::add_grid_light({frame.camera, texels, grid, lights, reflectances, radiance});
+    const std::vector<SurfacePoint> others = visible_surfaces(frame.camera, texels, rest);
+    pixel_points_.visit(PixelPoints::List::rest, others, [&](size_t i, std::span<const PointShare> about) {
+        const Reflectance r =
+            make_reflectance(materials[others[i].material % materials.size()], others[i].albedo);
+        radiance[rest[i]] += glm::vec4(r.kd / kPi * irradiance_of(about, irradiance_), 0);
     });
-    return all;
 }
 
 /// Adds what pixels reflect of the light at the gathering points about them.
@@ -188,29 +191,20 @@ void PathsEngine::add_indirect(Frame& frame) {
     const ArrivingLight* glossy = arriving_light(frame, materials);
     const TimedPass pass(frame, "interpolation");
     const std::vector<GBufferTexel> texels = download_gbuffer(frame);
-    const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
-    auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
-    const auto reflectance = [&](const SurfacePoint& at) {
-        return make_reflectance(materials[at.material % materials.size()], at.albedo);
-    };
+    auto radiance = frame.gl.radiance.download_all<glm::vec4>(texels.size());
     // Lobes need the points of each pixel.
     const uint32_t step = glossy ? 1 : frame.settings[kGatherEvery];
-    pixel_points_.begin(bake, frame.camera, texels, surfaces, frame.bake_offset, step);
+    pixel_points_.begin(bake, frame.camera, texels, frame.bake_offset, step);
     if (step > 1) {
-        const std::vector<glm::vec4> irradiance = irradiance_of_pixels(frame, surfaces, step);
-        parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i)
-                radiance[i] += glm::vec4(reflectance(surfaces[i]).kd / kPi, 0) * irradiance[i];
-        });
+        add_by_grid(frame, materials, texels, step, radiance);
     } else {
-        std::vector<uint32_t> pixels(surfaces.size());
-        std::iota(pixels.begin(), pixels.end(), 0u);
+        const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
         pixel_points_.visit(
-            PixelPoints::List::grid, pixels, [&](size_t i, std::span<const PointShare> about) {
+            PixelPoints::List::grid, surfaces, [&](size_t i, std::span<const PointShare> about) {
                 if (about.empty()) return;
                 const SurfacePoint& at = surfaces[i];
                 const glm::vec3 irradiance = irradiance_of(about, irradiance_);
-                const Reflectance r = reflectance(at);
+                const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
                 glm::vec3 reflected = r.kd / kPi * irradiance;
                 if (glossy && r.ks > 0)
                     reflected += glossy->reflected(about, irradiance, r, at.normal, at.viewer);

@@ -23,8 +23,7 @@ uint64_t key_of(const CameraView& camera, std::span<const GBufferTexel> texels, 
 }  // namespace
 
 void PixelPoints::begin(const PathsBake& bake, const CameraView& camera, std::span<const GBufferTexel> texels,
-                        std::span<const SurfacePoint> surfaces, const glm::vec3& offset, uint64_t lists) {
-    surfaces_ = surfaces;
+                        const glm::vec3& offset, uint64_t lists) {
     offset_ = offset;
     const uint64_t key = key_of(camera, texels, offset, lists);
     if (bake_ == &bake && key_ == key) return;
@@ -35,15 +34,15 @@ void PixelPoints::begin(const PathsBake& bake, const CameraView& camera, std::sp
     searched_ = 0;
 }
 
-void PixelPoints::visit(List list, std::span<const uint32_t> pixels, const Visit& visit) {
+void PixelPoints::visit(List list, std::span<const SurfacePoint> surfaces, const Visit& visit) {
     Sharing& found = found_[static_cast<size_t>(list)];
     if (found.first.empty()) alone_[static_cast<size_t>(list)] = 0;
-    for (size_t first = 0; first < pixels.size(); first += kMostPixels) {
-        const std::span some = pixels.subspan(first, std::min(pixels.size() - first, kMostPixels));
-        if (found.first.size() != some.size() + 1 || some.size() < pixels.size()) {
+    for (size_t first = 0; first < surfaces.size(); first += kMostPixels) {
+        const std::span some = surfaces.subspan(first, std::min(surfaces.size() - first, kMostPixels));
+        if (found.first.size() != some.size() + 1 || some.size() < surfaces.size()) {
             std::atomic<size_t> alone = 0;
             found = find_sharing(*bake_, some.size(), [&](PointFinder& finder, size_t i) {
-                const SurfacePoint& at = surfaces_[some[i]];
+                const SurfacePoint& at = some[i];
                 if (!(at.radius > 0)) return false;
                 if (!finder.find(at.position - offset_, at.normal)) ++alone;
                 return true;
@@ -53,9 +52,9 @@ void PixelPoints::visit(List list, std::span<const uint32_t> pixels, const Visit
         }
         parallel_ranges(some.size(), kPixelsAtOnce, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i)
-                if (surfaces_[some[i]].radius > 0) visit(first + i, found.of(i));
+                if (some[i].radius > 0) visit(first + i, found.of(i));
         });
-        if (some.size() < pixels.size()) found = {};
+        if (some.size() < surfaces.size()) found = {};
     }
 }
 

@@ -19,16 +19,16 @@ class PixelPoints {
  public:
     static constexpr size_t kMostPixels = size_t{1} << 21;  ///< found at a time; some 100 MB
 
-    /// Begins a picture. `surfaces` are those of `texels`, of all pixels. `offset`: of the bake's coordinates
-    /// in those of the frame (Frame::bake_offset). What was found for the same picture is kept.
+    /// Begins a picture. `offset`: of the bake's coordinates in those of the frame (Frame::bake_offset);
+    /// `lists`: how its pixels are listed. What was found for the same picture is kept.
     void begin(const PathsBake& bake, const CameraView& camera, std::span<const GBufferTexel> texels,
-               std::span<const SurfacePoint> surfaces, const glm::vec3& offset, uint64_t lists);
-    /// Calls visit(i, shares) for all pixels[i] that show a surface, from many threads at a time. Empty
-    /// shares: no point is near. `list` names the pixels: they must be the same in every call for one
-    /// picture.
+               const glm::vec3& offset, uint64_t lists);
+    /// Calls visit(i, shares) for all surfaces[i] that are there, those of some pixels, from many threads at
+    /// a time. Empty shares: no point is near. `list` names the pixels: they must be the same in every call
+    /// for one picture.
     using Visit = std::function<void(size_t, std::span<const PointShare>)>;
     enum class List : uint8_t { grid, rest };
-    void visit(List list, std::span<const uint32_t> pixels, const Visit& visit);
+    void visit(List list, std::span<const SurfacePoint> surfaces, const Visit& visit);
     /// How many pixels of the picture were searched for.
     size_t searched() const { return searched_; }
     /// How many of the pixels that were visited no point reaches.
@@ -37,7 +37,6 @@ class PixelPoints {
  private:
     const PathsBake* bake_ = nullptr;
     uint64_t key_ = 0;
-    std::span<const SurfacePoint> surfaces_;
     glm::vec3 offset_{0.0f};
     std::array<Sharing, 2> found_;  ///< by list; of lists of at most kMostPixels
     std::array<size_t, 2> alone_{};
