@@ -134,6 +134,7 @@ class PathsPrecomputation final : public Precomputation {
                 {s.position, side % 2 ? -s.normal : s.normal, s.radius, s.albedo, s.material});
         }
         bake->near = PointCells(paths.points, kPixelReach);
+        bake->near_blocks = native::point_blocks(paths.points, bake->near.numbers(), kPixelReach);
         bake->far = PointCells(paths.points, kFarReach);
         bake->paths = std::move(paths);
         bake->seed = input.settings[kSeed];

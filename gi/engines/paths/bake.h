@@ -11,6 +11,7 @@
 #include "gi/engines/paths/gathering_points.h"
 #include "gi/engines/paths/groups.h"
 #include "gi/engines/paths/light_paths.h"
+#include "gi/engines/paths/native/near_points.h"
 #include "gi/engines/paths/point_cells.h"
 
 namespace lucarne::gi::paths {
@@ -55,11 +56,12 @@ struct Sharing {
 class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBake> {
  public:
     LightPaths paths;
-    uint64_t seed = 0;           ///< of the directions of the gathering rays
-    std::vector<Entry> entries;  ///< of paths.entries
-    PointCells near;             ///< of the gathering points, with their reaches on pixels
-    PointCells far;              ///< likewise, for pixels that no reach covers
-    Sharing sharing;             ///< of the gathering points, with each other
+    uint64_t seed = 0;                            ///< of the directions of the gathering rays
+    std::vector<Entry> entries;                   ///< of paths.entries
+    PointCells near;                              ///< of the gathering points, with their reaches on pixels
+    std::vector<native::PointBlock> near_blocks;  ///< the points of near.numbers()
+    PointCells far;                               ///< likewise, for pixels that no reach covers
+    Sharing sharing;                              ///< of the gathering points, with each other
 };
 
 extern const Precomputes kPathsPrecomputes;

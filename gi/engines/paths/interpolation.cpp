@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
+#include "gi/engines/paths/native/near_points.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::paths {
@@ -20,36 +20,40 @@ constexpr size_t kPlacesAPiece = 256;
 
 }  // namespace
 
-bool PointFinder::find_within(float turn, const glm::vec3& position, const glm::vec3& normal) {
+/// Finds the points whose normals turn by less than this. Returns whether their weights suffice.
+bool PointFinder::share_within(float turn, const glm::vec3& position, const glm::vec3& normal) {
     shares_.clear();
-    wide_.clear();
-    float weights = 0, wide_weights = 0;
-    bake_.near.visit(position, [&](uint32_t i) {
-        const GatheringPoint& point = bake_.paths.points[i];
-        const float reach = kPixelReach * point.reach;
-        const float wide2 = squared_error_of(point, reach, kWideTurn, position, normal);
-        if (wide2 >= 1) return;
-        wide_.push_back({i, 1 - std::sqrt(std::max(wide2, 0.0f))});
-        wide_weights += wide_.back().share;
-        const float error2 = squared_error_of(point, reach, turn, position, normal);
-        if (error2 >= 1) return;
-        shares_.push_back({i, 1 - std::sqrt(std::max(error2, 0.0f))});
-        weights += shares_.back().share;
+    float weights = 0;
+    bake_.near.visit_lists(position, [&](uint32_t first, uint32_t count) {
+        const std::span blocks = std::span(bake_.near_blocks)
+                                     .subspan(first / PointCells::kListed,
+                                              (count + PointCells::kListed - 1) / PointCells::kListed);
+        found_.resize(std::max(found_.size(), blocks.size() * PointCells::kListed));
+        const size_t found = native::find_near(blocks, turn, position, normal, found_.data());
+        for (size_t i = 0; i < found; ++i) {
+            const GatheringPoint& point = bake_.paths.points[found_[i]];
+            const float reach = kPixelReach * point.reach;
+            const float error2 = squared_error_of(point, reach, turn, position, normal);
+            if (error2 >= 1) continue;
+            shares_.push_back({found_[i], 1 - std::sqrt(std::max(error2, 0.0f))});
+            weights += shares_.back().share;
+        }
     });
-    if (std::max(weights, wide_weights) > kLeastSum) {
-        const bool narrow = weights > kLeastSum;
-        if (!narrow) std::swap(shares_, wide_);
-        for (PointShare& s : shares_) s.share /= narrow ? weights : wide_weights;
-        return true;
-    }
+    if (!(weights > kLeastSum)) return false;
+    for (PointShare& s : shares_) s.share /= weights;
+    return true;
+}
+
+bool PointFinder::find_within(float turn, const glm::vec3& position, const glm::vec3& normal) {
+    if (share_within(turn, position, normal) || share_within(kWideTurn, position, normal)) return true;
     shares_.clear();
     float least = std::numeric_limits<float>::infinity();
     bake_.far.visit(position, [&](uint32_t i) {
         const GatheringPoint& point = bake_.paths.points[i];
         if (glm::dot(normal, point.normal) <= 0) return;
-        const float error = error_of(point, point.reach, kWideTurn, position, normal);
-        if (error >= least) return;
-        least = error;
+        const float error2 = squared_error_of(point, point.reach, kWideTurn, position, normal);
+        if (error2 >= least) return;
+        least = error2;
         shares_.assign(1, {i, 1.0f});
     });
     return false;

@@ -28,9 +28,11 @@ class PointFinder {
 
  private:
     bool find_within(float turn, const glm::vec3& position, const glm::vec3& normal);
+    bool share_within(float turn, const glm::vec3& position, const glm::vec3& normal);
 
     const PathsBake& bake_;
-    std::vector<PointShare> shares_, wide_;
+    std::vector<PointShare> shares_;
+    std::vector<uint32_t> found_;
 };
 
 /// Returns the irradiance at a place, W/m^2, from that of all gathering points (`irradiance`); black without

@@ -26,11 +26,13 @@ PointCells::PointCells(std::span<const GatheringPoint> points, float factor) {
     table_.resize(std::bit_ceil(2 * cells + 1));
     for (size_t first = 0; first < entries.size();) {
         size_t last = first;
+        const size_t begin = numbers_.size();
         while (last < entries.size() && entries[last].key == entries[first].key)
             numbers_.push_back(entries[last++].number);
+        numbers_.resize((numbers_.size() + kListed - 1) / kListed * kListed, kNone);
         size_t at = place_of(entries[first].key);
         while (table_[at].count > 0) at = (at + 1) & (table_.size() - 1);
-        table_[at] = {entries[first].key, static_cast<uint32_t>(first), static_cast<uint32_t>(last - first)};
+        table_[at] = {entries[first].key, static_cast<uint32_t>(begin), static_cast<uint32_t>(last - first)};
         first = last;
     }
 }
