@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <glm/vec4.hpp>
+
 #include "gi/shared/brdf.h"
 #include "gi/shared/environment.h"
 #include "gi/shared/surfel_code.h"
@@ -12,6 +14,27 @@ namespace lucarne::gi::paths {
 namespace {
 
 constexpr size_t kGroupsATask = 1024, kPointsATask = 64, kEntriesATask = 4096;
+
+/// The light of all groups, for sums of single ones from all over: each is read by one instruction, and kNone
+/// by no branch.
+class LightOfGroups {
+ public:
+    explicit LightOfGroups(std::span<const glm::vec3> light) : dark_(static_cast<uint32_t>(light.size())) {
+        light_.reserve(light.size() + 1);
+        for (const glm::vec3& one : light) light_.emplace_back(one, 0);
+        light_.emplace_back(0.0f);
+    }
+    /// Returns the sum over these groups, in their order.
+    glm::vec3 sum(std::span<const uint32_t> groups) const {
+        glm::vec4 sum(0.0f);
+        for (const uint32_t group : groups) sum += light_[std::min(group, dark_)];
+        return sum;
+    }
+
+ private:
+    uint32_t dark_;  ///< number of one without light, after the last
+    std::vector<glm::vec4> light_;
+};
 
 }  // namespace
 
@@ -86,14 +109,12 @@ void Relight::coarsen(std::vector<glm::vec3>& light) const {
 
 void Relight::follow_links(const std::vector<glm::vec3>& from, std::vector<glm::vec3>& to) const {
     const Links& links = bake_->paths.links;
+    const LightOfGroups light(from);
     std::vector<glm::vec3> arriving(links.groups.size() / kLinks, glm::vec3(0.0f));
     parallel_ranges(arriving.size(), kGroupsATask, [&](size_t begin, size_t end) {
-        for (size_t origin = begin; origin < end; ++origin) {
-            glm::vec3 sum(0.0f);
-            for (size_t i = origin * kLinks; i < (origin + 1) * kLinks; ++i)
-                if (links.groups[i] != kNone) sum += from[links.groups[i]];
-            arriving[origin] = sum / static_cast<float>(kLinks);
-        }
+        for (size_t origin = begin; origin < end; ++origin)
+            arriving[origin] = light.sum(std::span(links.groups).subspan(origin * kLinks, kLinks)) /
+                               static_cast<float>(kLinks);
     });
     to.assign(links.origin_of.size(), glm::vec3(0.0f));
     parallel_ranges(to.size(), kGroupsATask, [&](size_t begin, size_t end) {
@@ -177,14 +198,11 @@ std::vector<glm::vec3> Relight::gather() const {
     const LightPaths& paths = bake_->paths;
     std::vector<glm::vec3> irradiance(paths.points.size());
     const float share = 1 / static_cast<float>(paths.rays_a_point);
+    const LightOfGroups light(sum_);
     parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            glm::vec3 sum(0.0f);
-            const uint32_t* rays = paths.rays.data() + i * paths.rays_a_point;
-            for (uint32_t ray = 0; ray < paths.rays_a_point; ++ray)
-                if (rays[ray] != kNone) sum += sum_[rays[ray]];
-            irradiance[i] = share * sum;
-        }
+        for (size_t i = begin; i < end; ++i)
+            irradiance[i] =
+                share * light.sum(std::span(paths.rays).subspan(i * paths.rays_a_point, paths.rays_a_point));
     });
     return irradiance;
 }
