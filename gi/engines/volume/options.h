@@ -38,7 +38,7 @@ inline constexpr Option<uint32_t> kVolumeLevels{{
     .least = 1,
     .most = 4,
     .slider = {1, 4},
-    .defaults = {int64_t{1}, int64_t{2}, int64_t{2}},
+    .defaults = {int64_t{1}, int64_t{1}, int64_t{1}},
     .cheaper = -1,
 }};
 
