@@ -34,7 +34,7 @@ struct PlaneShape {
 
 Sweeper::Sweeper(std::span<const Space* const> spaces) {
     for (const Space* space : spaces) {
-        Level& level = levels_.emplace_back(*space);
+        Level& level = levels_.emplace_back(Level{*space});
         if (levels_.size() > 1) level.border.emplace(levels_[levels_.size() - 2].space, *space);
         const auto occupied = space->voxels.occupied();
         const Grid& grid = space->grid();
