@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <string_view>
 
 #include "gi/options.h"
 
@@ -50,6 +52,32 @@ inline constexpr Option<uint32_t> kRadiosityLevel{{
     .most = 18,
     .slider = {8, 16},
     .defaults = {int64_t{10}, int64_t{12}, int64_t{14}},
+    .cheaper = -1,
+}};
+
+/// How light comes to the surfels that pixels gather from, after its first reflection.
+enum class LightPoints : uint8_t { radiosity, photons };
+inline constexpr std::array<std::string_view, 2> kLightPointKinds = {"radiosity", "photons"};
+inline constexpr Option<LightPoints> kLightPoints{{
+    .kind = OptionKind::choice,
+    .key = "light_points",
+    .label = "light points",
+    .help =
+        "How light is exchanged before the last bounce: between places, or by photons, which show caustics",
+    .choices = kLightPointKinds,
+    .defaults = {int64_t{0}, int64_t{0}, int64_t{0}},
+}};
+
+inline constexpr Option<uint64_t> kPhotons{{
+    .kind = OptionKind::integer,
+    .key = "photons",
+    .label = "photons",
+    .help = "Photons that leave lit surfaces, with light points photons",
+    .cost = "twice as many take twice as long for every bounce but the last, and have less noise",
+    .least = 1000,
+    .most = 1e9,
+    .slider = {65536, 16777216, true},
+    .defaults = {int64_t{262144}, int64_t{1048576}, int64_t{4194304}},
     .cheaper = -1,
 }};
 

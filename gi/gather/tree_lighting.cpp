@@ -46,13 +46,41 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
     const TimedPass pass(frame, "surfel tree");
     tree_of_.reset();
     light_of_.reset();
+    photons_.reset();
     LUCARNE_TRY(lit_.set_surfels(frame));
     LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));
     tree_of_ = cuts_.light;
     return {};
 }
 
-Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& settings) {
+Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, LightPoints points,
+                                    std::vector<SideLight>& light) {
+    const bool by_photons = points == LightPoints::photons && settings.bounces > 0;
+    const Photons::Settings photons{.photons = frame.settings[kPhotons],
+                                    .bounces = settings.bounces,
+                                    .only_last = settings.only_last,
+                                    .seed = settings.seed};
+    if (by_photons) settings.bounces = 0;
+    {
+        const TimedPass pass(frame, "radiosity");
+        if (settings.bounces > 0 || settings.sky)
+            LUCARNE_TRY(radiosity_.choose_places(*opencl_, lit_, gatherer_, frame.settings[kRadiosityLevel],
+                                                 settings.seed, frame.stop));
+        if (frame.stopped()) return {};
+        LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
+    }
+    if (frame.stopped() || !by_photons) return {};
+    const TimedPass pass(frame, "photons");
+    if (!photons_) {
+        Photons made;
+        LUCARNE_TRY(made.set_surfels(lit_));
+        photons_ = std::move(made);
+    }
+    photons_->trace(lit_, device_materials(frame.materials), photons, light, frame.stop);
+    return {};
+}
+
+Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& settings, LightPoints points) {
     Basis basis{scene_, cuts_, {}, settings.sky ? frame.index : 0};
     for (const LightView& view : views_) basis.lights.push_back(view.light);
     if (light_of_ == basis) {
@@ -66,13 +94,8 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
         const TimedPass pass(frame, "surfel light");
         LUCARNE_TRY(lit_.set_light(frame, views_, light_gbuffers_));
     }
-    const TimedPass pass(frame, "radiosity");
-    if (settings.bounces > 0 || settings.sky)
-        LUCARNE_TRY(radiosity_.choose_places(*opencl_, lit_, gatherer_, frame.settings[kRadiosityLevel],
-                                             settings.seed, frame.stop));
-    if (frame.stopped()) return {};
     std::vector<SideLight> light;
-    LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
+    LUCARNE_TRY(exchange(frame, settings, points, light));
     if (frame.stopped()) return {};
     pull_light(lit_.tree(), light, slots_);
     lobes_ = settings.bounces == 0 || !settings.only_last;

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "gi/changes.h"
+#include "gi/gather/gather_options.h"
 #include "gi/gather/gatherer.h"
 #include "gi/gather/lit_tree.h"
+#include "gi/gather/photons.h"
 #include "gi/gather/radiosity.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
@@ -31,7 +33,8 @@ class TreeLighting {
     Result<void> make_tree(Frame& frame);
     /// Brings the light that surfels send out up to date, after so many reflections (`settings`, whose seed
     /// may differ from frame to frame), and gives it to the gatherer. Errors: a device failed.
-    Result<void> make_light(Frame& frame, const Radiosity::Settings& settings);
+    Result<void> make_light(Frame& frame, const Radiosity::Settings& settings,
+                            LightPoints points = LightPoints::radiosity);
     /// Gives the gatherer other light: the surfels' own (if `own`), and what slots reflect of this
     /// irradiance, W/m^2, by side (twice the slot, and one more for the back). make_light() has to come
     /// first. Errors: a device failed.
@@ -57,6 +60,9 @@ class TreeLighting {
         bool operator==(const Basis&) const = default;
     };
 
+    /// Sets the light that surfels send out. Errors: a device failed.
+    Result<void> exchange(Frame& frame, Radiosity::Settings settings, LightPoints points,
+                          std::vector<SideLight>& light);
     /// Gives the gatherer this light, and if `lobes` what the surfels reflect of the lights by their lobes.
     Result<void> set_slots(std::span<const SideLight> slots, bool lobes);
 
@@ -73,6 +79,7 @@ class TreeLighting {
     SceneRevisions scene_;  ///< of the frame that is drawn
     LightCutRevisions cuts_;
     std::optional<uint64_t> sky_of_;   ///< revision of the environment that the sky is made from
+    std::optional<Photons> photons_;   ///< of the tree, once something asks for them
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()

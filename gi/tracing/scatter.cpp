@@ -11,18 +11,6 @@
 namespace lucarne::gi::tracing {
 namespace {
 
-/// Draws a direction about `axis` with the density (n+1)/(2 pi) cos^n; n = 1 is cosine-weighted.
-glm::vec3 sample_cosine_power(const glm::vec3& axis, float n, Random& random) {
-    const auto u = static_cast<float>(random.uniform());
-    const auto phi = static_cast<float>(2 * M_PI * random.uniform());
-    const float cosine = std::pow(1.0f - u, 1.0f / (n + 1.0f));
-    const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
-    glm::vec3 tangent, bitangent;
-    frame_of(axis, tangent, bitangent);
-    return glm::normalize(tangent * (sine * std::cos(phi)) + bitangent * (sine * std::sin(phi)) +
-                          axis * cosine);
-}
-
 glm::vec3 mirror(const glm::vec3& normal, const glm::vec3& out) {
     return normal * (2.0f * glm::dot(normal, out)) - out;
 }
@@ -38,6 +26,17 @@ float specular_share(const Reflectance& surface) {
 }
 
 }  // namespace
+
+glm::vec3 cosine_power_direction(const glm::vec3& axis, float exponent, const glm::dvec2& square) {
+    const auto u = static_cast<float>(square.x);
+    const auto phi = static_cast<float>(2 * M_PI * square.y);
+    const float cosine = std::pow(1.0f - u, 1.0f / (exponent + 1.0f));
+    const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+    glm::vec3 tangent, bitangent;
+    frame_of(axis, tangent, bitangent);
+    return glm::normalize(tangent * (sine * std::cos(phi)) + bitangent * (sine * std::sin(phi)) +
+                          axis * cosine);
+}
 
 float scatter_pdf(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
                   const glm::vec3& in) {
@@ -56,8 +55,9 @@ std::optional<Scattered> scatter(const Reflectance& surface, const glm::vec3& no
     const float share = specular_share(surface);
     if (share < 0) return std::nullopt;
     const bool specular = random.uniform() < share;
-    const glm::vec3 in = sample_cosine_power(specular ? mirror(normal, out) : normal,
-                                             specular ? surface.exponent : 1.0f, random);
+    const double u = random.uniform(), v = random.uniform();
+    const glm::vec3 in = cosine_power_direction(specular ? mirror(normal, out) : normal,
+                                                specular ? surface.exponent : 1.0f, {u, v});
     const float pdf = scatter_pdf(surface, normal, out, in);
     if (!(pdf > 0)) return std::nullopt;
     return Scattered{in, brdf(surface, normal, out, in) * (glm::dot(normal, in) / pdf), pdf};

@@ -2,12 +2,17 @@
 
 #include <optional>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "gi/shared/brdf.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::tracing {
+
+/// Returns the direction about a unit axis that belongs to a point of the unit square: even points give
+/// directions whose density is (n + 1) / (2 pi) cos^n of the angle to the axis, 1/sr.
+glm::vec3 cosine_power_direction(const glm::vec3& axis, float exponent, const glm::dvec2& square);
 
 struct Scattered {
     glm::vec3 direction;

@@ -19,8 +19,8 @@ namespace micro {
 namespace {
 
 constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,        &kOnlyBounce.info,      &kMicroBuffer.info,  &kGatherEvery.info,
-    &kRadiosityLevel.info, &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+    &kBounces.info,     &kOnlyBounce.info, &kMicroBuffer.info,     &kGatherEvery.info,  &kRadiosityLevel.info,
+    &kLightPoints.info, &kPhotons.info,    &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "micro",
                            .label = "Final gathering",
                            .description = "final gathering of the light of all surfels, on OpenCL",
@@ -53,12 +53,14 @@ Result<void> MicroEngine::gather(Frame& frame) {
     LUCARNE_TRY(lighting_.make_tree(frame));
     if (wants_indirect(s)) {
         const bool only = s[kOnlyBounce] >= 0;
-        LUCARNE_TRY(lighting_.make_light(
-            frame, {.bounces = (only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces]) - 1,
-                    .sky = lighting_.has_sky(),
-                    .only_last = only,
-                    .side = std::min(s[kMicroBuffer], kLargestRadiositySide),
-                    .seed = mix64(s[kSeed], frame.index)}));
+        LUCARNE_TRY(
+            lighting_.make_light(frame,
+                                 {.bounces = (only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces]) - 1,
+                                  .sky = lighting_.has_sky(),
+                                  .only_last = only,
+                                  .side = std::min(s[kMicroBuffer], kLargestRadiositySide),
+                                  .seed = mix64(s[kSeed], frame.index)},
+                                 s[kLightPoints]));
     }
     if (frame.stopped()) return {};
     const Gathered what = !wants_indirect(s)                       ? Gathered::sky

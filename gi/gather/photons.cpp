@@ -1,0 +1,283 @@
+#include "gi/gather/photons.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "gi/lighting/area_points.h"
+#include "gi/shared/lobe.h"
+#include "gi/shared/surfel_code.h"
+#include "gi/tracing/exposure.h"
+#include "gi/tracing/scatter.h"
+#include "io/core/parallel.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr size_t kPhotonsAtOnce = 65536, kPhotonsATask = 512, kLeavesATask = 4096;
+/// The light of a surfel is the mean over nodes about it, up to one that has so many photons, or this many
+/// levels further up. So flux stays within some surfels of where it arrived.
+constexpr uint32_t kPhotonsOfANode = 16, kPointsOfANode = 16;
+constexpr int kLevelsUp = 3;
+/// Nodes thicker than this share of their bound hold more than one surface, or a bent one.
+constexpr float kFlat = 0.25f;
+
+float mean(const glm::vec3& v) {
+    return (v.x + v.y + v.z) / 3;
+}
+
+/// A side of a slot: the area of it that light can meet, m^2, and what arrived there.
+struct Side {
+    glm::vec3 flux{0.0f};  ///< W
+    float area = 0;
+    uint32_t photons = 0, points = 0;  ///< points: those that tell the area
+
+    void add(const Side& other) {
+        flux += other.flux;
+        area += other.area;
+        photons += other.photons;
+        points += other.points;
+    }
+};
+using Sides = std::array<Side, 2>;  ///< front and back
+
+/// Sets the sides of all nodes from those of the surfels.
+void pull(const SurfelTree& tree, std::vector<Sides>& sides) {
+    for_each_upward(tree, [&](size_t node) {
+        for (size_t slot = 8 * node; slot < 8 * node + 8; ++slot)
+            for_each_child(tree, slot, [&](size_t child) {
+                const size_t front = facing(tree, slot, child).same ? 0 : 1;
+                sides[slot][0].add(sides[child][front]);
+                sides[slot][1].add(sides[child][1 - front]);
+            });
+    });
+}
+
+/// Where photons start: one of the two lobes of a side of a surfel.
+struct Source {
+    size_t surfel, slot;  ///< of the tracer; of the tree
+    bool back, specular;
+};
+constexpr size_t kSources = 4;  ///< of each surfel
+
+/// Everything that sends photons, by the flux that it sends.
+class Sources {
+ public:
+    /// `leaves`: the slots of surfels; `sides`: of each slot; `light`: what each surfel sends out evenly.
+    Sources(const LitTree& scene, std::span<const uint32_t> leaves, std::span<const Sides> sides,
+            std::span<const SideLight> light)
+        : scene_(scene), leaves_(leaves), sides_(sides), light_(light) {
+        const size_t kinds = scene.lobes().light.empty() ? 2 : kSources;
+        ends_.reserve(leaves.size() * kSources);
+        double sum = 0;
+        for (size_t i = 0; i < leaves.size() * kSources; ++i) {
+            if (i % kSources < kinds) sum += std::max(0.0f, mean(flux(source(i))));
+            ends_.push_back(sum);
+        }
+    }
+    /// W, the mean of the three colours.
+    double total() const { return ends_.empty() ? 0 : ends_.back(); }
+    /// Returns the source at a share of the total, 0 to 1.
+    Source at(double share) const {
+        const auto found = std::upper_bound(ends_.begin(), ends_.end(), share * total());
+        return source(std::min(static_cast<size_t>(found - ends_.begin()), ends_.size() - 1));
+    }
+    /// Returns what a source sends out, W. Of specular lobes a part may be below the surface.
+    glm::vec3 flux(const Source& s) const {
+        const float area = sides_[s.slot][s.back ? 1 : 0].area;
+        const SideLight& light =
+            s.specular ? scene_.lobes().light[s.slot] : light_[scene_.tree().surfels[s.slot]];
+        return (s.specular ? area : kPi * area) * (s.back ? light.back : light.front);
+    }
+
+ private:
+    Source source(size_t i) const {
+        const size_t surfel = i / kSources, kind = i % kSources;
+        return {surfel, leaves_[surfel], (kind & 1) != 0, kind >= 2};
+    }
+
+    const LitTree& scene_;
+    std::span<const uint32_t> leaves_;
+    std::span<const Sides> sides_;
+    std::span<const SideLight> light_;
+    std::vector<double> ends_;
+};
+
+struct Photon {
+    glm::vec3 origin, direction, flux;
+};
+
+/// Returns a photon that leaves a side at a direction that belongs to a point of the unit square.
+std::optional<Photon> leave(const LitTree& scene, const Source& source, const Surfel& surfel,
+                            const glm::vec3& flux, const glm::dvec2& square) {
+    const glm::vec3 normal = source.back ? -surfel.normal : surfel.normal;
+    const glm::vec3 origin = tracing::offset_origin(surfel.position, normal, surfel.radius);
+    if (!source.specular) return Photon{origin, tracing::cosine_power_direction(normal, 1, square), flux};
+    const SideLobes& lobes = scene.lobes();
+    const glm::vec3 directions =
+        source.back ? lobes.directions[source.slot].back : lobes.directions[source.slot].front;
+    const glm::vec3 light = source.back ? lobes.light[source.slot].back : lobes.light[source.slot].front;
+    const float size = glm::length(directions);
+    if (!(size > 0)) return std::nullopt;
+    const float exponent = lobe_exponent(size / mean(light));
+    const glm::vec3 direction = tracing::cosine_power_direction(directions / size, exponent, square);
+    const float cosine = glm::dot(direction, normal);
+    if (!(cosine > 0)) return std::nullopt;
+    // lobe_radiance() times the cosine, over the density of the direction.
+    return Photon{origin, direction, flux * ((exponent + 2) / (exponent + 1) * cosine)};
+}
+
+/// Where a photon arrived.
+struct Hit {
+    uint32_t surfel = 0;  ///< of the tracer
+    bool back = false;
+    glm::vec3 flux{0.0f};  ///< W
+};
+
+/// Follows photons from surface to surface.
+class Walk {
+ public:
+    Walk(const tracing::SurfelTracer& tracer, std::span<const Material> materials,
+         const Photons::Settings& settings)
+        : tracer_(tracer), materials_(materials), settings_(settings) {}
+
+    /// Adds where a photon arrives.
+    void follow(Photon photon, Random& random, std::vector<Hit>& hits) const {
+        for (uint32_t bounce = 1;; ++bounce) {
+            const auto hit = tracer_.first_hit(photon.origin, photon.direction);
+            if (!hit) return;
+            if (bounce == settings_.bounces || !settings_.only_last)
+                hits.push_back({hit->surfel, hit->back, photon.flux});
+            if (bounce == settings_.bounces) return;
+            const Surfel& surfel = tracer_.surfels()[hit->surfel];
+            const glm::vec3 normal = hit->back ? -surfel.normal : surfel.normal;
+            const Reflectance surface =
+                make_reflectance(materials_[surfel.material % materials_.size()], surfel.albedo);
+            const auto scattered = tracing::scatter(surface, normal, -photon.direction, random);
+            if (!scattered) return;
+            // Roulette keeps the flux of photons about the same.
+            const glm::vec3& weight = scattered->weight;
+            const float survival = std::min(1.0f, std::max({weight.x, weight.y, weight.z}));
+            if (!(random.uniform() < survival)) return;
+            const glm::vec3 place = photon.origin + photon.direction * hit->distance;
+            photon = {tracing::offset_origin(place, normal, surfel.radius), scattered->direction,
+                      photon.flux * weight / survival};
+        }
+    }
+
+ private:
+    const tracing::SurfelTracer& tracer_;
+    std::span<const Material> materials_;
+    const Photons::Settings& settings_;
+};
+
+/// Returns whether the irradiance of a side is known well.
+bool known(const Side& side) {
+    return side.photons >= kPhotonsOfANode && side.points >= kPointsOfANode;
+}
+
+/// Returns whether a slot holds one surface that is not bent.
+bool flat(const SurfelTree& tree, size_t slot) {
+    const WideNode& node = tree.nodes[slot / 8];
+    return node.thickness[slot % 8] <= kFlat * node.bound[slot % 8];
+}
+
+}  // namespace
+
+Result<void> Photons::set_surfels(const LitTree& scene) {
+    const SurfelTree& tree = scene.tree();
+    std::vector<Surfel> surfels;
+    slot_of_.clear();
+    parent_of_.assign(tree.nodes.size(), kNoSurfel);
+    for (size_t slot = 0; slot < tree.surfels.size(); ++slot) {
+        const int child = tree.nodes[slot / 8].child[slot % 8];
+        if (child >= 0) parent_of_[static_cast<size_t>(child)] = static_cast<uint32_t>(slot);
+        if (tree.surfels[slot] == kNoSurfel) continue;
+        const FlatSurfel& s = scene.surfels()[tree.surfels[slot]];
+        const Surfel surfel{.position = {s.x, s.y, s.z},
+                            .normal = decode_octahedral(s.normal),
+                            .albedo = decode_albedo(s.albedo),
+                            .radius = s.radius,
+                            .area = tree.areas[slot],
+                            .material = s.material};
+        if (!tracing::has_disc(surfel)) continue;
+        surfels.push_back(surfel);
+        slot_of_.push_back(static_cast<uint32_t>(slot));
+    }
+    LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(std::move(surfels)));
+    exposures_ = tracing::exposures(*tracer_);
+    return {};
+}
+
+void Photons::trace(const LitTree& scene, std::span<const Material> materials, const Settings& settings,
+                    std::vector<SideLight>& light, const std::atomic<bool>* stop) const {
+    const SurfelTree& tree = scene.tree();
+    std::vector<Sides> sides(tree.surfels.size());
+    for (size_t i = 0; i < slot_of_.size(); ++i) {
+        const float radius = tracer_->surfels()[i].radius;
+        const float area = kPi * radius * radius / tracing::kExposurePoints;
+        const auto [front, back] = exposures_[i];
+        sides[slot_of_[i]] = {Side{.area = area * front, .points = front},
+                              Side{.area = area * back, .points = back}};
+    }
+    const Sources sources(scene, slot_of_, sides, light);
+    const Walk walk(*tracer_, materials, settings);
+    const uint64_t count = sources.total() > 0 ? settings.photons : 0;
+    const double each = sources.total() / static_cast<double>(std::max<uint64_t>(count, 1));
+    Random shifts(settings.seed, count);
+    const double shift_u = shifts.uniform(), shift_v = shifts.uniform();
+    std::vector<std::vector<Hit>> hits(kPhotonsAtOnce / kPhotonsATask);
+    for (uint64_t first = 0; first < count && !(stop && *stop); first += kPhotonsAtOnce) {
+        const size_t some = std::min<uint64_t>(kPhotonsAtOnce, count - first);
+        for (std::vector<Hit>& found : hits) found.clear();
+        parallel_ranges(some, kPhotonsATask, [&](size_t begin, size_t end) {
+            for (uint64_t i = first + begin; i < first + end; ++i) {
+                Random random(settings.seed, i);
+                // Neighbours leave one after the other, in directions that are even among them.
+                const auto number = static_cast<double>(i);
+                const Source source = sources.at((number + random.uniform()) / static_cast<double>(count));
+                const glm::dvec2 square = glm::fract(glm::dvec2(shift_u, shift_v) + number * kR2);
+                const glm::vec3 power = sources.flux(source);
+                const glm::vec3 flux = power * static_cast<float>(each / mean(power));
+                if (const auto photon = leave(scene, source, tracer_->surfels()[source.surfel], flux, square))
+                    walk.follow(*photon, random, hits[begin / kPhotonsATask]);
+            }
+        });
+        // In their order, so that sums are the same on every run.
+        for (const std::vector<Hit>& found : hits)
+            for (const Hit& hit : found) {
+                Side& side = sides[slot_of_[hit.surfel]][hit.back ? 1 : 0];
+                side.flux += hit.flux;
+                ++side.photons;
+            }
+    }
+    pull(tree, sides);
+    const auto reflectances = scene.reflectances();
+    if (settings.only_last) light.assign(light.size(), {});
+    // Returns the irradiance of a side of a leaf, W/m^2.
+    const auto irradiance = [&](size_t slot, size_t side) {
+        for (int up = 0; up < kLevelsUp && !known(sides[slot][side]); ++up) {
+            const uint32_t parent = parent_of_[slot / 8];
+            if (parent == kNoSurfel || !flat(tree, parent)) break;
+            if (!facing(tree, parent, slot).same) side = 1 - side;
+            slot = parent;
+        }
+        const Side& at = sides[slot][side];
+        return at.area > 0 ? at.flux / at.area : glm::vec3(0.0f);
+    };
+    parallel_ranges(slot_of_.size(), kLeavesATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const uint32_t surfel = tree.surfels[slot_of_[i]];
+            light[surfel].front += reflectances[surfel] * irradiance(slot_of_[i], 0);
+            light[surfel].back += reflectances[surfel] * irradiance(slot_of_[i], 1);
+        }
+    });
+}
+
+}  // namespace lucarne::gi
