@@ -24,7 +24,12 @@ class LitTree {
     /// Of each slot of the tree: what its surfels reflect of the lights by their specular lobes; empty if
     /// nothing is glossy.
     const SideLobes& lobes() const { return lobes_; }
+    /// The same of each surfel.
+    const SideLobes& lobes_of_surfels() const { return lit_.lobes(); }
     std::span<const glm::vec3> reflectances() const { return lit_.reflectances(); }
+
+    /// Returns lobes by surfel (set_light() has to come first) as lobes by slot.
+    SideLobes pulled(const SideLobes& by_surfel) const;
 
  private:
     SurfelTree tree_;

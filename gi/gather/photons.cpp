@@ -34,12 +34,14 @@ float mean(const glm::vec3& v) {
 
 /// A side of a slot: the area of it that light can meet, m^2, and what arrived there.
 struct Side {
-    glm::vec3 flux{0.0f};  ///< W
+    glm::vec3 flux{0.0f};        ///< W
+    glm::vec3 directions{0.0f};  ///< where mirrors would send the photons, each times the mean of its flux
     float area = 0;
     uint32_t photons = 0, points = 0;  ///< points: those that tell the area
 
     void add(const Side& other) {
         flux += other.flux;
+        directions += other.directions;
         area += other.area;
         photons += other.photons;
         points += other.points;
@@ -71,9 +73,9 @@ class Sources {
  public:
     /// `leaves`: the slots of surfels; `sides`: of each slot; `light`: what each surfel sends out evenly.
     Sources(const LitTree& scene, std::span<const uint32_t> leaves, std::span<const Sides> sides,
-            std::span<const SideLight> light)
-        : scene_(scene), leaves_(leaves), sides_(sides), light_(light) {
-        const size_t kinds = scene.lobes().light.empty() ? 2 : kSources;
+            std::span<const SideLight> light, const SideLobes& lobes)
+        : scene_(scene), leaves_(leaves), sides_(sides), light_(light), lobes_(lobes) {
+        const size_t kinds = lobes.light.empty() ? 2 : kSources;
         ends_.reserve(leaves.size() * kSources);
         double sum = 0;
         for (size_t i = 0; i < leaves.size() * kSources; ++i) {
@@ -91,8 +93,8 @@ class Sources {
     /// Returns what a source sends out, W. Of specular lobes a part may be below the surface.
     glm::vec3 flux(const Source& s) const {
         const float area = sides_[s.slot][s.back ? 1 : 0].area;
-        const SideLight& light =
-            s.specular ? scene_.lobes().light[s.slot] : light_[scene_.tree().surfels[s.slot]];
+        const uint32_t surfel = scene_.tree().surfels[s.slot];
+        const SideLight& light = s.specular ? lobes_.light[surfel] : light_[surfel];
         return (s.specular ? area : kPi * area) * (s.back ? light.back : light.front);
     }
 
@@ -106,6 +108,7 @@ class Sources {
     std::span<const uint32_t> leaves_;
     std::span<const Sides> sides_;
     std::span<const SideLight> light_;
+    const SideLobes& lobes_;
     std::vector<double> ends_;
 };
 
@@ -113,16 +116,16 @@ struct Photon {
     glm::vec3 origin, direction, flux;
 };
 
-/// Returns a photon that leaves a side at a direction that belongs to a point of the unit square.
-std::optional<Photon> leave(const LitTree& scene, const Source& source, const Surfel& surfel,
+/// Returns a photon that leaves a side at a direction that belongs to a point of the unit square. `surfel`:
+/// its number in `lobes`.
+std::optional<Photon> leave(const SideLobes& lobes, uint32_t surfel, const Source& source, const Surfel& disc,
                             const glm::vec3& flux, const glm::dvec2& square) {
-    const glm::vec3 normal = source.back ? -surfel.normal : surfel.normal;
-    const glm::vec3 origin = tracing::offset_origin(surfel.position, normal, surfel.radius);
+    const glm::vec3 normal = source.back ? -disc.normal : disc.normal;
+    const glm::vec3 origin = tracing::offset_origin(disc.position, normal, disc.radius);
     if (!source.specular) return Photon{origin, tracing::cosine_power_direction(normal, 1, square), flux};
-    const SideLobes& lobes = scene.lobes();
-    const glm::vec3 directions =
-        source.back ? lobes.directions[source.slot].back : lobes.directions[source.slot].front;
-    const glm::vec3 light = source.back ? lobes.light[source.slot].back : lobes.light[source.slot].front;
+    const SideLight &both = lobes.light[surfel], &to = lobes.directions[surfel];
+    const glm::vec3 light = source.back ? both.back : both.front;
+    const glm::vec3 directions = source.back ? to.back : to.front;
     const float size = glm::length(directions);
     if (!(size > 0)) return std::nullopt;
     const float exponent = lobe_exponent(size / mean(light));
@@ -137,7 +140,7 @@ std::optional<Photon> leave(const LitTree& scene, const Source& source, const Su
 struct Hit {
     uint32_t surfel = 0;  ///< of the tracer
     bool back = false;
-    glm::vec3 flux{0.0f};  ///< W
+    glm::vec3 flux{0.0f}, direction{0.0f};  ///< W; that of the photon
 };
 
 /// Follows photons from surface to surface.
@@ -153,7 +156,7 @@ class Walk {
             const auto hit = tracer_.first_hit(photon.origin, photon.direction);
             if (!hit) return;
             if (bounce == settings_.bounces || !settings_.only_last)
-                hits.push_back({hit->surfel, hit->back, photon.flux});
+                hits.push_back({hit->surfel, hit->back, photon.flux, photon.direction});
             if (bounce == settings_.bounces) return;
             const Surfel& surfel = tracer_.surfels()[hit->surfel];
             const glm::vec3 normal = hit->back ? -surfel.normal : surfel.normal;
@@ -175,6 +178,19 @@ class Walk {
     const tracing::SurfelTracer& tracer_;
     std::span<const Material> materials_;
     const Photons::Settings& settings_;
+};
+
+/// What a surfel sends out of the light that comes to a side.
+struct Reflected {
+    glm::vec3 even{0.0f};                    ///< radiance, W/(sr m^2)
+    glm::vec3 lobe{0.0f}, directions{0.0f};  ///< a specular lobe (lobe.h)
+
+    Reflected(const Reflectance& r, const Side& side) {
+        if (!(side.area > 0)) return;
+        even = r.kd / kPi * side.flux / side.area;
+        lobe = r.ks * side.flux / side.area;
+        directions = r.ks * lobe_mean_cosine(r.exponent) * side.directions / side.area;
+    }
 };
 
 /// Returns whether the irradiance of a side is known well.
@@ -216,7 +232,7 @@ Result<void> Photons::set_surfels(const LitTree& scene) {
 }
 
 void Photons::trace(const LitTree& scene, std::span<const Material> materials, const Settings& settings,
-                    std::vector<SideLight>& light, const std::atomic<bool>* stop) const {
+                    std::vector<SideLight>& light, SideLobes& lobes, const std::atomic<bool>* stop) const {
     const SurfelTree& tree = scene.tree();
     std::vector<Sides> sides(tree.surfels.size());
     for (size_t i = 0; i < slot_of_.size(); ++i) {
@@ -226,7 +242,7 @@ void Photons::trace(const LitTree& scene, std::span<const Material> materials, c
         sides[slot_of_[i]] = {Side{.area = area * front, .points = front},
                               Side{.area = area * back, .points = back}};
     }
-    const Sources sources(scene, slot_of_, sides, light);
+    const Sources sources(scene, slot_of_, sides, light, lobes);
     const Walk walk(*tracer_, materials, settings);
     const uint64_t count = sources.total() > 0 ? settings.photons : 0;
     const double each = sources.total() / static_cast<double>(std::max<uint64_t>(count, 1));
@@ -245,8 +261,9 @@ void Photons::trace(const LitTree& scene, std::span<const Material> materials, c
                 const glm::dvec2 square = glm::fract(glm::dvec2(shift_u, shift_v) + number * kR2);
                 const glm::vec3 power = sources.flux(source);
                 const glm::vec3 flux = power * static_cast<float>(each / mean(power));
-                if (const auto photon = leave(scene, source, tracer_->surfels()[source.surfel], flux, square))
-                    walk.follow(*photon, random, hits[begin / kPhotonsATask]);
+                const auto photon = leave(lobes, tree.surfels[source.slot], source,
+                                          tracer_->surfels()[source.surfel], flux, square);
+                if (photon) walk.follow(*photon, random, hits[begin / kPhotonsATask]);
             }
         });
         // In their order, so that sums are the same on every run.
@@ -254,28 +271,40 @@ void Photons::trace(const LitTree& scene, std::span<const Material> materials, c
             for (const Hit& hit : found) {
                 Side& side = sides[slot_of_[hit.surfel]][hit.back ? 1 : 0];
                 side.flux += hit.flux;
+                const glm::vec3& normal = tracer_->surfels()[hit.surfel].normal;
+                side.directions += mean(hit.flux) * glm::reflect(hit.direction, normal);
                 ++side.photons;
             }
     }
     pull(tree, sides);
-    const auto reflectances = scene.reflectances();
-    if (settings.only_last) light.assign(light.size(), {});
-    // Returns the irradiance of a side of a leaf, W/m^2.
-    const auto irradiance = [&](size_t slot, size_t side) {
+    if (settings.only_last) {
+        light.assign(light.size(), {});
+        lobes.light.assign(lobes.light.size(), {});
+        lobes.directions.assign(lobes.directions.size(), {});
+    }
+    // Returns the side of a node that tells what a side of a leaf receives.
+    const auto about = [&](size_t slot, size_t side) -> const Side& {
         for (int up = 0; up < kLevelsUp && !known(sides[slot][side]); ++up) {
             const uint32_t parent = parent_of_[slot / 8];
             if (parent == kNoSurfel || !flat(tree, parent)) break;
             if (!facing(tree, parent, slot).same) side = 1 - side;
             slot = parent;
         }
-        const Side& at = sides[slot][side];
-        return at.area > 0 ? at.flux / at.area : glm::vec3(0.0f);
+        return sides[slot][side];
     };
     parallel_ranges(slot_of_.size(), kLeavesATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const uint32_t surfel = tree.surfels[slot_of_[i]];
-            light[surfel].front += reflectances[surfel] * irradiance(slot_of_[i], 0);
-            light[surfel].back += reflectances[surfel] * irradiance(slot_of_[i], 1);
+            const Surfel& disc = tracer_->surfels()[i];
+            const Reflectance r = make_reflectance(materials[disc.material % materials.size()], disc.albedo);
+            const Reflected front(r, about(slot_of_[i], 0)), back(r, about(slot_of_[i], 1));
+            light[surfel].front += front.even;
+            light[surfel].back += back.even;
+            if (lobes.light.empty()) continue;  // nothing is glossy
+            lobes.light[surfel].front += front.lobe;
+            lobes.light[surfel].back += back.lobe;
+            lobes.directions[surfel].front += front.directions;
+            lobes.directions[surfel].back += back.directions;
         }
     });
 }

@@ -29,11 +29,12 @@ class Photons {
         bool only_last = false;  ///< compute the light of the last one alone
         uint64_t seed = 0;
     };
-    /// Adds to the light that each surfel sends out what it reflects of photons, which leave by `light` and
-    /// the lobes of the scene; replaces it if `only_last`. The same arguments give the same light, whatever
-    /// the number of threads. Gives up if `stop` becomes true.
+    /// Adds what the surfels reflect of photons to what they send out, evenly (`light`) and by lobes, both by
+    /// surfel; photons leave by these as well. Replaces them if `only_last`. No lobes: nothing is glossy. The
+    /// same arguments give the same light, whatever the number of threads. Gives up if `stop` becomes true.
     void trace(const LitTree& scene, std::span<const Material> materials, const Settings& settings,
-               std::vector<SideLight>& light, const std::atomic<bool>* stop = nullptr) const;
+               std::vector<SideLight>& light, SideLobes& lobes,
+               const std::atomic<bool>* stop = nullptr) const;
 
  private:
     std::unique_ptr<tracing::SurfelTracer> tracer_;

@@ -60,6 +60,7 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
                                     .bounces = settings.bounces,
                                     .only_last = settings.only_last,
                                     .seed = settings.seed};
+    lobes_ = settings.bounces == 0 || !settings.only_last ? lit_.lobes() : SideLobes{};
     if (by_photons) settings.bounces = 0;
     {
         const TimedPass pass(frame, "radiosity");
@@ -76,7 +77,9 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
         LUCARNE_TRY(made.set_surfels(lit_));
         photons_ = std::move(made);
     }
-    photons_->trace(lit_, device_materials(frame.materials), photons, light, frame.stop);
+    SideLobes lobes = lit_.lobes_of_surfels();
+    photons_->trace(lit_, device_materials(frame.materials), photons, light, lobes, frame.stop);
+    lobes_ = lit_.pulled(lobes);
     return {};
 }
 
@@ -98,7 +101,6 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
     LUCARNE_TRY(exchange(frame, settings, points, light));
     if (frame.stopped()) return {};
     pull_light(lit_.tree(), light, slots_);
-    lobes_ = settings.bounces == 0 || !settings.only_last;
     LUCARNE_TRY(set_slots(slots_, lobes_));
     replaced_ = false;
     light_of_ = std::move(basis);
@@ -121,13 +123,12 @@ Result<void> TreeLighting::set_irradiance(std::span<const glm::vec3> irradiance,
         }
     });
     replaced_ = true;
-    return set_slots(slots, own);
+    return set_slots(slots, own ? lit_.lobes() : SideLobes{});
 }
 
-Result<void> TreeLighting::set_slots(std::span<const SideLight> slots, bool lobes) {
+Result<void> TreeLighting::set_slots(std::span<const SideLight> slots, const SideLobes& lobes) {
     LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
-    const SideLobes none;
-    return gatherer_.set_lobes(*opencl_, lobes ? lit_.lobes() : none);
+    return gatherer_.set_lobes(*opencl_, lobes);
 }
 
 Result<void> TreeLighting::add_direct(Frame& frame) {

@@ -60,11 +60,11 @@ class TreeLighting {
         bool operator==(const Basis&) const = default;
     };
 
-    /// Sets the light that surfels send out. Errors: a device failed.
+    /// Sets the light that surfels send out evenly, and `lobes_`. Errors: a device failed.
     Result<void> exchange(Frame& frame, Radiosity::Settings settings, LightPoints points,
                           std::vector<SideLight>& light);
-    /// Gives the gatherer this light, and if `lobes` what the surfels reflect of the lights by their lobes.
-    Result<void> set_slots(std::span<const SideLight> slots, bool lobes);
+    /// Gives the gatherer this light.
+    Result<void> set_slots(std::span<const SideLight> slots, const SideLobes& lobes);
 
     ClDevice* opencl_ = nullptr;  ///< of the frame's device
     Gatherer gatherer_;
@@ -83,7 +83,7 @@ class TreeLighting {
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()
-    bool lobes_ = false;            ///< whether lobes belong to it
+    SideLobes lobes_;               ///< by slot, that belong to it
     bool replaced_ = false;         ///< the gatherer has other light
     std::vector<SideLight> own_slots_,
         reflecting_;  ///< the surfels' own light, and their reflectances, pulled
