@@ -64,8 +64,10 @@ inline constexpr Option<LightPoints> kLightPoints{{
     .label = "light points",
     .help =
         "How light is exchanged before the last bounce: between places, or by photons, which show caustics",
+    .cost = "photons take seconds for each set of points first, and are right where places are too few",
     .choices = kLightPointKinds,
-    .defaults = {int64_t{0}, int64_t{0}, int64_t{0}},
+    .defaults = {int64_t{0}, int64_t{0}, int64_t{1}},
+    .cheaper = -1,
 }};
 
 inline constexpr Option<uint64_t> kPhotons{{
@@ -77,7 +79,7 @@ inline constexpr Option<uint64_t> kPhotons{{
     .least = 1000,
     .most = 1e9,
     .slider = {65536, 16777216, true},
-    .defaults = {int64_t{262144}, int64_t{1048576}, int64_t{4194304}},
+    .defaults = {int64_t{262144}, int64_t{1048576}, int64_t{1048576}},
     .cheaper = -1,
 }};
 
