@@ -1,5 +1,5 @@
 // The experiments of the papers behind the engines that gather light, repeated: Harada 2014 (table 1 and fig.
-// 5 on scenes of ours) and Ritschel et al. 2009 (figs 10 and 12).
+// 5 on scenes of ours) and Ritschel et al. 2009 (figs 7 to 10, 12, 13).
 #pragma once
 
 #include <algorithm>
@@ -62,52 +62,141 @@ inline Result<void> figures_of_environment(gi::Device& device, const BenchRun& r
     return {};
 }
 
+/// Prints how far a picture is from the truth, and what it took.
+inline Result<void> print_against(const std::string& name, const Stage::Picture& picture,
+                                  const Scan::Truth& truth) {
+    LUCARNE_ASSIGN(const auto error, gi::compare_with_halves(picture.pixels, truth.first, truth.second));
+    double gather = 0;
+    for (const char* pass : {"radiosity", "photons", "gather", "upsample"})
+        gather += pass_seconds(picture.last, pass);
+    fmt::print("{:>24} {:>12.2g} {:>10.1g} {:>10.2f} {:>9.2f} {:>9.2f} {:>12.0f}\n", name, error.rel_mse,
+               error.standard_error,
+               100 * (gi::mean_luminance(picture.pixels) / gi::mean_luminance(truth.whole) - 1), gather,
+               picture.cpu_seconds, statistic(picture.last, "gather_points"));
+    std::fflush(stdout);
+    return {};
+}
+inline void columns_against(const std::string& text, const char* first) {
+    heading(text);
+    fmt::print("{:>24} {:>12} {:>10} {:>10} {:>9} {:>9} {:>12}\n", first, "relMSE", "+-", "energy %",
+               "gather s", "CPU-s", "gathers");
+}
+
 /// Prints error and time of `micro` by one of its options.
 inline Result<void> sweep_of_micro(Stage& stage, const Scan::Truth& truth, gi::EngineSettings settings,
                                    const gi::Option<uint32_t>& option, const std::vector<int64_t>& values) {
     for (const int64_t value : values) {
         settings.set(option, static_cast<uint32_t>(value));
         LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture("micro", settings));
-        LUCARNE_ASSIGN(const auto error, gi::compare_with_halves(picture.pixels, truth.first, truth.second));
-        fmt::print("{:>14} {:>12.2g} {:>10.1g} {:>10.2f} {:>9.2f} {:>9.2f} {:>12.0f}\n", value, error.rel_mse,
-                   error.standard_error,
-                   100 * (gi::mean_luminance(picture.pixels) / gi::mean_luminance(truth.whole) - 1),
-                   pass_seconds(picture.last, "gather") + pass_seconds(picture.last, "upsample"),
-                   picture.cpu_seconds, statistic(picture.last, "gather_points"));
+        LUCARNE_TRY(print_against(fmt::to_string(value), picture, truth));
+    }
+    return {};
+}
+
+/// Figs 10 and 12 on one bounce, and 9: `vpl` and `micro` of the same presets.
+inline Result<void> figures_of_one_bounce(gi::Device& device, const BenchRun& run, const std::string& scene) {
+    LUCARNE_ASSIGN(const Scan scan, Scan::create(scene, run.points(300'000), run.folder));
+    Stage stage(device, scan);
+    const ImageSize size = run.size({160, 120});
+    LUCARNE_TRY(
+        stage.open({.scene = scene_file(scene), .size = size, .preset = run.trial() ? "preview" : "high"}));
+    gi::EngineSettings settings = stage.settings();
+    settings.set(gi::kOnlyBounce, 1);
+    LUCARNE_ASSIGN(const Scan::Truth truth, stage.truth(settings, std::max<uint64_t>(run.count(256), 2)));
+    LUCARNE_TRY(stage.picture("micro", settings));  // the kernels, first loads
+    const std::string what =
+        fmt::format("{}, bounce 1, {}x{}, against the reference", scene, size.width, size.height);
+    settings.set(gi::kGatherEvery, 1);
+    columns_against("fig. 12: side of the micro-buffers, every pixel gathers: " + what +
+                        " (the paper, 256x256 of a plant: 8 3.2 Hz, 16 1.5 Hz, 24 .7 Hz)",
+                    "side");
+    const std::vector<int64_t> sides(gi::kBufferSides.begin(), gi::kBufferSides.end());
+    LUCARNE_TRY(sweep_of_micro(stage, truth, settings, gi::kMicroBuffer, run.cases(sides)));
+    columns_against("fig. 10: one pixel of so many along both axes gathers, 24 x 24: " + what +
+                        " (the paper, 512x512: 1 .83 Hz, 2 2.2 Hz, 4 4.2 Hz)",
+                    "gather every");
+    settings.set(gi::kMicroBuffer, 24);
+    LUCARNE_TRY(sweep_of_micro(stage, truth, settings, gi::kGatherEvery, run.cases<int64_t>({1, 2, 4})));
+    columns_against("fig. 9: VPLs and final gathering, presets of this program: " + what +
+                        " (the paper: less error than imperfect shadow maps at 5 Hz each)",
+                    "engine");
+    for (const std::string& preset : run.cases<std::string>({"interactive", "high"}))
+        for (const std::string& engine : {"vpl", "micro"}) {
+            LUCARNE_ASSIGN(const viewer::Preset of_preset, viewer::find_preset(preset));
+            gi::EngineSettings of = of_preset.engine;
+            of.set(gi::kOnlyBounce, 1);
+            LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture(engine, of));
+            LUCARNE_TRY(print_against(engine + " " + preset, picture, truth));
+        }
+    return {};
+}
+
+/// Figs 7 and 8: the second bounce, from light that radiosity or photons brought to surfels.
+inline Result<void> figures_of_light_points(gi::Device& device, const BenchRun& run) {
+    using Scene = std::string;
+    for (const Scene& scene : run.cases<Scene>({"cornell", "cornell-glossy", "nave"})) {
+        const std::string model = scene.substr(0, scene.find('-'));
+        LUCARNE_ASSIGN(const Scan scan, Scan::create(model, run.points(300'000), run.folder));
+        Stage stage(device, scan);
+        const ImageSize size = run.size({96, 72});
+        LUCARNE_TRY(stage.open(
+            {.scene = scene_file(scene), .size = size, .preset = run.trial() ? "preview" : "high"}));
+        gi::EngineSettings settings = stage.settings();
+        settings.set(gi::kOnlyBounce, 2);
+        LUCARNE_ASSIGN(const Scan::Truth truth, stage.truth(settings, std::max<uint64_t>(run.count(256), 2)));
+        columns_against(fmt::format("figs 7 and 8: {}, bounce 2, {}x{}", scene, size.width, size.height),
+                        "light points");
+        settings.set(gi::kLightPoints, gi::LightPoints::radiosity);
+        for (const int64_t level : run.cases<int64_t>({10, 12, 14})) {
+            settings.set(gi::kRadiosityLevel, static_cast<uint32_t>(level));
+            LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture("micro", settings));
+            LUCARNE_TRY(print_against(fmt::format("radiosity, 2^{} places", level), picture, truth));
+        }
+        settings.set(gi::kLightPoints, gi::LightPoints::photons);
+        for (const int64_t photons : run.cases<int64_t>({65'536, 1'048'576, 4'194'304})) {
+            settings.set(gi::kPhotons, static_cast<uint64_t>(photons));
+            LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture("micro", settings));
+            LUCARNE_TRY(print_against(fmt::format("{} photons", photons), picture, truth));
+        }
+    }
+    return {};
+}
+
+/// Fig. 13 and the shares of time in section 5.
+inline Result<void> figures_of_sizes(gi::Device& device, const BenchRun& run) {
+    heading(
+        "fig. 13: surfels of cornell, every pixel gathers, 24 x 24 (the paper: sub-linear from 2^14 to 2^21; "
+        "150M samples/s)");
+    fmt::print("{:>10} {:>9} {:>10} {:>14} {:>40}\n", "surfels", "tree s", "gather s", "M samples/s",
+               "% tree, light of surfels, gather, direct");
+    for (const uint64_t points : run.cases<uint64_t>({16'384, 131'072, 1'048'576})) {
+        LUCARNE_ASSIGN(const Scan scan, Scan::create("cornell", run.points(points), run.folder, "--even"));
+        Stage stage(device, scan);
+        LUCARNE_TRY(stage.open({.scene = scene_file("cornell"),
+                                .size = run.size({256, 256}),
+                                .preset = run.trial() ? "preview" : "high"}));
+        gi::EngineSettings settings = stage.settings();
+        settings.set(gi::kBounces, 1);
+        LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture("micro", settings));
+        const auto seconds = [&](const char* pass) { return pass_seconds(picture.last, pass); };
+        const double gather = seconds("gather"), tree = seconds("surfel tree"),
+                     light = seconds("surfel light") + seconds("radiosity"), direct = seconds("direct light"),
+                     side = settings[gi::kMicroBuffer];
+        const double all = gather + tree + light + direct;
+        fmt::print("{:>10.0f} {:>9.3f} {:>10.3f} {:>14.1f} {:>19.1f} {:>6.1f} {:>6.1f} {:>6.1f}\n",
+                   statistic(picture.last, "surfels"), tree, gather,
+                   statistic(picture.last, "gather_points") * side * side / gather / 1e6, 100 * tree / all,
+                   100 * light / all, 100 * gather / all, 100 * direct / all);
         std::fflush(stdout);
     }
     return {};
 }
 
 inline Result<void> figures_of_micro(gi::Device& device, const BenchRun& run) {
-    using Scene = std::string;
-    for (const Scene& scene : run.cases<Scene>({"cornell", "nave"})) {
-        LUCARNE_ASSIGN(const Scan scan, Scan::create(scene, run.points(300'000), run.folder));
-        Stage stage(device, scan);
-        const ImageSize size = run.size({160, 120});
-        LUCARNE_TRY(stage.open(
-            {.scene = scene_file(scene), .size = size, .preset = run.trial() ? "preview" : "high"}));
-        gi::EngineSettings settings = stage.settings();
-        settings.set(gi::kOnlyBounce, 1);
-        LUCARNE_ASSIGN(const Scan::Truth truth, stage.truth(settings, std::max<uint64_t>(run.count(256), 2)));
-        LUCARNE_TRY(stage.picture("micro", settings));  // the kernels, first loads
-        const std::string what =
-            fmt::format("{}, bounce 1, {}x{}, against the reference", scene, size.width, size.height);
-        const auto columns = [](const char* option) {
-            fmt::print("{:>14} {:>12} {:>10} {:>10} {:>9} {:>9} {:>12}\n", option, "relMSE", "+-", "energy %",
-                       "gather s", "CPU-s", "gathers");
-        };
-        heading("fig. 12: side of the micro-buffers, every pixel gathers: " + what);
-        columns("side");
-        settings.set(gi::kGatherEvery, 1);
-        const std::vector<int64_t> sides(gi::kBufferSides.begin(), gi::kBufferSides.end());
-        LUCARNE_TRY(sweep_of_micro(stage, truth, settings, gi::kMicroBuffer, run.cases(sides)));
-        heading("fig. 10: one pixel of so many along both axes gathers, 24 x 24: " + what);
-        columns("gather every");
-        settings.set(gi::kMicroBuffer, 24);
-        LUCARNE_TRY(sweep_of_micro(stage, truth, settings, gi::kGatherEvery, run.cases<int64_t>({1, 2, 4})));
-    }
-    return {};
+    for (const std::string& scene : run.cases<std::string>({"cornell", "nave"}))
+        LUCARNE_TRY(figures_of_one_bounce(device, run, scene));
+    LUCARNE_TRY(figures_of_light_points(device, run));
+    return figures_of_sizes(device, run);
 }
 
 }  // namespace lucarne::bench
