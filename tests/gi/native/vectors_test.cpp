@@ -216,7 +216,7 @@ TEST(Disc, LinesOfVectorsAreTheSame) {
     Numbers number;
     const DiscView view = picture_of(0);
     for (int i = 0; i < 10'000; ++i) {
-        const auto any = [&] { return static_cast<uint32_t>((number() + 1) * 0x7fffffff); };
+        const auto any = [&] { return static_cast<uint32_t>((number() + 1) * 0x7fffff80); };
         const uint32_t b = any(), c = encode_octahedral(number.unit()) ^ (any() & 0x000f000fu),
                        d = any() | (i % 3 ? kSurfelHasEdge : 0u);
         const vec3 expected = d & kSurfelHasEdge ? edge_of_code(surfel_edge_code(c, d), decode_octahedral(c),
