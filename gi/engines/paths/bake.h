@@ -66,8 +66,4 @@ class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBa
 
 extern const Precomputes kPathsPrecomputes;
 
-/// Gathering points serve pixels somewhat beyond their reach, so that several always do; pixels that none
-/// serves take the nearest one within kFarReach times its reach.
-inline constexpr float kPixelReach = 1.6f, kFarReach = 8;
-
 }  // namespace lucarne::gi::paths

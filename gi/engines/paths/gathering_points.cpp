@@ -81,7 +81,7 @@ void PointChooser::find_normals() {
 bool PointChooser::is_covered(const glm::vec3& position, const glm::vec3& normal) const {
     return grid_.any_of(position, [&](uint32_t i) {
         const GatheringPoint& point = state_.points[i];
-        return error_of(point, point.reach, kSpawnTurn, position, normal) < 1;
+        return error_of(point, point.reach, kSpawnTurn, position, normal) < 1 && !point.is_hidden(position);
     });
 }
 
@@ -91,7 +91,9 @@ bool PointChooser::restore(State state) {
         !(state.spacing.most >= state_.spacing.most) || !std::isfinite(state.spacing.most))
         return false;
     for (const GatheringPoint& p : state.points)
-        if (p.side >= order_.size() || !(p.reach > 0) || !(p.reach <= state.spacing.most)) return false;
+        if (p.side >= order_.size() || !(p.reach > 0) || !(p.reach <= state.spacing.most) ||
+            !p.walls.are_finite())
+            return false;
     for (const RayHit& hit : state.hits)
         if ((hit.side >= order_.size() && hit.side != kNone) || !std::isfinite(hit.width)) return false;
     state_.spacing = state.spacing;
@@ -130,28 +132,29 @@ bool PointChooser::advance() {
     state_.next = passed.size() == most ? first + passed.back() + 1 : last;
     tests_a_pass_ = static_cast<double>(state_.next - first) / static_cast<double>(passed.size() + 1);
     std::vector<RayHit> hits(passed.size() * rays_);
-    std::vector<float> lengths(passed.size());
+    std::vector<GatheringPoint> points(passed.size());
     parallel_ranges(passed.size(), kTracedAPiece, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const Side side = order_[first + passed[i]];
             const Surfel& s = tracer_.surfels()[side / 2];
-            lengths[i] = trace_rays(tracer_, {s.position, normals[passed[i]], s.radius}, seed_, side,
-                                    std::span(hits).subspan(i * rays_, rays_));
+            const RayStart start{s.position, normals[passed[i]], s.radius};
+            const float length =
+                trace_rays(tracer_, start, seed_, side, std::span(hits).subspan(i * rays_, rays_));
+            const float reach = std::clamp(length / 2, state_.spacing.least, state_.spacing.most);
+            points[i] = {s.position, start.normal, reach, side,
+                         find_walls(tracer_, start, kPixelReach * reach)};
         }
     });
     for (size_t i = 0; i < passed.size(); ++i) {
-        const Side side = order_[first + passed[i]];
-        const glm::vec3 position = tracer_.surfels()[side / 2].position, normal = normals[passed[i]];
-        if (is_covered(position, normal)) continue;
+        if (is_covered(points[i].position, points[i].normal)) continue;
         if (state_.points.size() == kMostPoints) {
             state_.spacing.least *= kLargerSpacing;
             state_.spacing.most *= kLargerSpacing;
             start_over();
             return true;
         }
-        const float reach = std::clamp(lengths[i] / 2, state_.spacing.least, state_.spacing.most);
-        grid_.add(static_cast<uint32_t>(state_.points.size()), position, reach);
-        state_.points.push_back({position, normal, reach, side});
+        grid_.add(static_cast<uint32_t>(state_.points.size()), points[i].position, points[i].reach);
+        state_.points.push_back(points[i]);
         const auto own = hits.begin() + static_cast<std::ptrdiff_t>(i * rays_);
         state_.hits.insert(state_.hits.end(), own, own + rays_);
     }

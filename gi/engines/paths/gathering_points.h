@@ -12,16 +12,24 @@
 #include "gi/engines/paths/cosine_rays.h"
 #include "gi/engines/paths/point_grid.h"
 #include "gi/engines/paths/sides.h"
+#include "gi/engines/paths/walls.h"
 #include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi::paths {
+
+/// Gathering points serve pixels somewhat beyond their reach, so that several always do; pixels that none
+/// serves take the nearest one within kFarReach times its reach.
+inline constexpr float kPixelReach = 1.6f, kFarReach = 8;
 
 /// A place at which light is gathered, for what lies within its reach.
 struct GatheringPoint {
     glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
     float reach = 0;  ///< m: how far its light is valid along the surface
     Side side = kNone;
+    Walls walls;  ///< up to the distance at which pixels use its light
     bool operator==(const GatheringPoint&) const = default;
+    /// Whether walls hide a place from it.
+    bool is_hidden(const glm::vec3& place) const { return walls.hide(place - position, normal); }
 };
 
 /// Returns the error of using a point's light at another place (Yue et al. 2007, eq. 7, after Tabellion &

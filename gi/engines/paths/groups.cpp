@@ -128,14 +128,15 @@ void GroupBuilder::add_leaf(std::span<const Side> sides, uint32_t facing) {
     starts_.push_back(static_cast<uint32_t>(sides_.size()));
 }
 
-/// Divides the sides in a cell by what they face, and where there is room between parallel sheets.
+/// Divides the sides in a cell by what they face, and where there is room between parallel sheets. A front
+/// and a back that face the same way are the near sheet of a thin wall and the inside of its far one.
 void GroupBuilder::make_leaves(Cell& cell) {
     cell.first_leaf = leaves();
-    std::array<std::vector<Side>, kFacings> facing;
+    std::array<std::vector<Side>, 2 * kFacings> facing;  // of fronts, then of backs
     for (size_t i = cell.first; i < cell.last; ++i)
         for (const Side side : {2 * order_[i], 2 * order_[i] + 1})
-            facing[facing_of(normal_of(surfels_, side))].push_back(side);
-    for (uint32_t f = 0; f < kFacings; ++f) {
+            facing[facing_of(normal_of(surfels_, side)) + side % 2 * kFacings].push_back(side);
+    for (uint32_t f = 0; f < 2 * kFacings; ++f) {
         std::vector<Side>& sides = facing[f];
         if (sides.empty()) continue;
         glm::vec3 normal(0.0f);

@@ -12,8 +12,10 @@ namespace {
 
 /// On curved surfaces light changes with the normal, so points whose normals differ by up to 24 degrees count
 /// (14 degrees while points share their light, which blurs as well); up to 40 degrees where there are none,
-/// as normals of pixels are noisy. Roots of 1 - cos.
-constexpr float kTurn = 0.29403f, kSharingTurn = 0.17235f, kWideTurn = 0.48369f;
+/// as normals of pixels are noisy. The rim of a disc that sticks out through a wall has none like it on its
+/// side of the wall: it takes the light of those about it in front of which it lies, turned by up to 102
+/// degrees. Roots of 1 - cos.
+constexpr float kTurn = 0.29403f, kSharingTurn = 0.17235f, kWideTurn = 0.48369f, kAnyTurn = 1.1f;
 /// Pixels with less weight than this in all take the nearest point.
 constexpr float kLeastSum = 1e-3f;
 constexpr size_t kPlacesAPiece = 256;
@@ -34,7 +36,8 @@ bool PointFinder::share_within(float turn, const glm::vec3& position, const glm:
             const GatheringPoint& point = bake_.paths.points[found_[i]];
             const float reach = kPixelReach * point.reach;
             const float error2 = squared_error_of(point, reach, turn, position, normal);
-            if (error2 >= 1) continue;
+            if (error2 >= 1 || point.is_hidden(position)) continue;
+            if (turn == kAnyTurn && glm::dot(position - point.position, point.normal) < 0) continue;
             shares_.push_back({found_[i], 1 - std::sqrt(std::max(error2, 0.0f))});
             weights += shares_.back().share;
         }
@@ -45,7 +48,8 @@ bool PointFinder::share_within(float turn, const glm::vec3& position, const glm:
 }
 
 bool PointFinder::find_within(float turn, const glm::vec3& position, const glm::vec3& normal) {
-    if (share_within(turn, position, normal) || share_within(kWideTurn, position, normal)) return true;
+    for (const float widest : {turn, kWideTurn, kAnyTurn})
+        if (share_within(widest, position, normal)) return true;
     shares_.clear();
     float least = std::numeric_limits<float>::infinity();
     bake_.far.visit(position, [&](uint32_t i) {

@@ -28,14 +28,16 @@ TEST_F(GatheringPoints, CoverEverySideAndNoneCoversAnother) {
     for (Side side = 0; side < 2 * tracer_->surfels().size(); ++side) {
         double least = 1e9;
         for (const GatheringPoint& point : state.points)
-            least = std::min<double>(
-                least, error_of(point, point.reach, kTurn, tracer_->surfels()[side / 2].position,
-                                normal_of(tracer_->surfels(), side)));
+            if (!point.is_hidden(tracer_->surfels()[side / 2].position))
+                least = std::min<double>(
+                    least, error_of(point, point.reach, kTurn, tracer_->surfels()[side / 2].position,
+                                    normal_of(tracer_->surfels(), side)));
         ASSERT_LT(least, 1) << side;
     }
     for (size_t i = 0; i < state.points.size(); ++i)
         for (size_t earlier = 0; earlier < i; ++earlier) {
             const GatheringPoint& point = state.points[earlier];
+            if (point.is_hidden(state.points[i].position)) continue;
             ASSERT_GE(error_of(point, point.reach, kTurn, state.points[i].position, state.points[i].normal),
                       1);
         }
@@ -58,6 +60,28 @@ TEST_F(GatheringPoints, AreDenserInCornersAndSparseOutside) {
         }
     }
     EXPECT_GT(inside, 2 * outside);
+}
+
+TEST(GatheringPointsAboutAWall, ServeTheirOwnSideOfItOnly) {
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, {-1, 0, 0}, 2.0f * kX, kY, 60, glm::vec3(.5f));
+    scenes::add_rectangle(surfels, {0, -.5f, -.5f}, 2.0f * kY, 2.0f * kZ, 60, glm::vec3(.5f));
+    const auto tracer = tracer_of(surfels);
+    const auto state = all_points(*tracer);
+    int before = 0, behind = 0;
+    for (const GatheringPoint& point : state.points) {
+        if (std::abs(point.normal.z) < .9f || point.position.y < .2f || point.position.y > .8f) continue;
+        const float x = point.position.x;
+        if (kPixelReach * point.reach < std::abs(x) + .01f) continue;  // it ends before the wall
+        for (const float along : {-.3f, -.05f, .05f, .3f}) {
+            const glm::vec3 place(x > 0 ? -.01f : .01f, point.position.y + along * std::abs(x), 0);
+            EXPECT_TRUE(point.is_hidden(place)) << x << " " << along;
+            EXPECT_FALSE(point.is_hidden(place * glm::vec3(-1, 1, 1))) << x << " " << along;
+        }
+        ++(x > 0 ? before : behind);
+    }
+    EXPECT_GT(before, 5);
+    EXPECT_GT(behind, 5);
 }
 
 TEST_F(GatheringPoints, AreTheSameWhereverTheyWereInterruptedAndWithOneThread) {
@@ -84,6 +108,7 @@ TEST_F(GatheringPoints, DamagedOnesAreNotContinued) {
     EXPECT_FALSE(refuses([](auto&) {}));
     EXPECT_TRUE(refuses([](auto& s) { s.points[3].side = 1'000'000; }));
     EXPECT_TRUE(refuses([](auto& s) { s.points[3].reach = std::nanf(""); }));
+    EXPECT_TRUE(refuses([](auto& s) { s.points[3].walls.planes[5].y = std::nanf(""); }));
     EXPECT_TRUE(refuses([](auto& s) { s.hits[3].side = 1'000'000; }));
     EXPECT_TRUE(refuses([](auto& s) { s.hits.pop_back(); }));
     EXPECT_TRUE(refuses([](auto& s) { s.next = 1'000'000; }));

@@ -93,6 +93,19 @@ TEST(Groups, ParallelSheetsStaySeparate) {
         ASSERT_NE(groups.leaf_of[2 * i], groups.leaf_of[2 * (i + 64 * 64)]);
 }
 
+TEST(Groups, NeverHoldAFrontAndABack) {
+    // A wall thinner than its discs are wide: the front of one sheet and the back of the other face the same
+    // way.
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, kO, kX, kY, 64, glm::vec3(.5f));
+    scenes::add_rectangle(surfels, -.01f * kZ, kY, kX, 64, glm::vec3(.5f));
+    const Groups groups = groups_of(surfels, .2f, all_see_each_other);
+    std::set<uint32_t> fronts;
+    for (uint32_t i = 0; i < surfels.size(); ++i) fronts.insert(largest_of(groups, 2 * i));
+    for (uint32_t i = 0; i < surfels.size(); ++i)
+        EXPECT_FALSE(fronts.contains(largest_of(groups, 2 * i + 1)));
+}
+
 TEST(Groups, OfDifferentAirAreNotJoined) {
     const auto surfels = scenes::closed_box(1, 32, glm::vec3(.5f));
     // Inside of the box, and outside.
