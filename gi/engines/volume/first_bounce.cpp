@@ -239,15 +239,32 @@ void FirstBounce::look(const Face& face, size_t first, size_t last, std::vector<
     }
 }
 
-/// Returns the irradiance of a face by these clusters. They are divided into groups of about equal light,
-/// neighbours together, and one line of sight decides for each group: where all of it is seen the sum is
-/// exact.
+/// Returns what a face sees of the rays that have more than their share of the light, and drops them: each
+/// is decided by a line of sight of its own, so that no other decides for it, and all others are left for the
+/// rest. Sets the sum of the rest to `whole`.
+glm::vec3 FirstBounce::take_brightest(uint32_t number, std::vector<Ray>& rays, float& whole) const {
+    glm::vec3 sum(0.0f);
+    for (size_t before = 0; before != rays.size();) {
+        before = rays.size();
+        whole = 0;
+        for (const Ray& ray : rays) whole += luminance(ray.light);
+        std::erase_if(rays, [&](const Ray& ray) {
+            if (!(luminance(ray.light) * kLinesOfSight > whole)) return false;
+            if (space_.air.sees(places_[number], places_[ray.face])) sum += ray.light;
+            return true;
+        });
+    }
+    return sum;
+}
+
+/// Returns the irradiance of a face by these clusters. Those that are not alone are divided into groups of
+/// about equal light, neighbours together, and one line of sight decides for each group: where all of it is
+/// seen the sum is exact.
 glm::vec3 FirstBounce::gather(uint32_t number, size_t first, size_t last, std::vector<Ray>& rays) const {
     look(space_.faces.all()[number], first, last, rays);
     float whole = 0;
-    for (const Ray& ray : rays) whole += luminance(ray.light);
+    glm::vec3 sum = take_brightest(number, rays, whole), light(0.0f);
     const float group = whole / kLinesOfSight;
-    glm::vec3 sum(0.0f), light(0.0f);
     float gathered = 0;  // of the present group
     uint32_t seen = Faces::kNone;
     const auto finish = [&] {

@@ -51,6 +51,7 @@ class FirstBounce {
         uint32_t face;    ///< to which the line of sight goes
     };
     void look(const Face& face, size_t first, size_t last, std::vector<Ray>& rays) const;
+    glm::vec3 take_brightest(uint32_t face, std::vector<Ray>& rays, float& whole) const;
     glm::vec3 gather(uint32_t face, size_t first, size_t last, std::vector<Ray>& rays) const;
 
     const Space& space_;

@@ -12,6 +12,7 @@
 #include "gi/engines/volume/propagation.h"
 #include "gi/engines/volume/sweep.h"
 #include "io/core/parallel.h"
+#include "io/core/random.h"
 #include "tests/gi/engines/volume/volume_space.h"
 
 namespace lucarne::gi::volume {
@@ -151,6 +152,34 @@ TEST(VolumeTransport, NothingEntersASealedRoom) {
         EXPECT_EQ(first[i], glm::vec3(0)) << i;
     }
     EXPECT_GT(inside, 2000u);
+}
+
+TEST(VolumeTransport, TheFarSideOfAWallLightsNothingWhereSomethingElseIsSeen) {
+    // A floor and a scanned ceiling, whose discs touch two layers of voxels: noise puts parts of its upper
+    // side, which the sun lights, before its lower one.
+    auto surfels = flat::square(60, 1);
+    surfels.push_back(flat::of(Surfel{kZ, kZ, glm::vec3(.5f), .001f, 1e-6f, 0}));
+    Random random(1);
+    for (FlatSurfel surfel : flat::square(60, 1)) {
+        surfel.z = 0.5f + 0.005f * (static_cast<float>(random.uniform()) - 0.5f);
+        surfels.push_back(surfel);
+    }
+    const Space space = make_space(surfels);
+    const auto floor = [](const Face& face) { return face.side == 4 && face.position.z < .2f; };
+    const auto above = [](const Face& face) { return face.side == 4 && face.position.z > .4f; };
+    const auto dark_above = radiance_of(space, floor);
+    auto sunny_above = dark_above;
+    for (size_t i = 0; i < sunny_above.size(); ++i)
+        if (above(space.faces.all()[i])) sunny_above[i] = glm::vec3(1000);
+    const auto expected = gathered(space, dark_above), light = gathered(space, sunny_above);
+    size_t below = 0;
+    for (size_t i = 0; i < light.size(); ++i) {
+        const Face& face = space.faces.all()[i];
+        if (face.side != 5 || std::abs(face.position.z - .5f) > .1f) continue;
+        ++below;
+        EXPECT_LE(light[i].x, 1.1f * expected[i].x) << i;
+    }
+    EXPECT_GT(below, 500u);
 }
 
 TEST(VolumeTransport, IsTheSameForAnyNumberOfThreads) {
