@@ -1,13 +1,19 @@
 #include "gi/volume/air.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
+
+#include "gi/volume/blocks.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::volume {
 namespace {
+
+constexpr size_t kOccupiedATask = 256;
 
 /// For a row of cells, `stride` apart: the largest of the distance along the row to a cell and of that cell's
 /// own distance, at the cell where it is least. Repeated over all axes this is the distance of
@@ -29,9 +35,37 @@ void spread(std::vector<uint8_t>& distances, size_t first, size_t stride, int co
     }
 }
 
+/// Returns Air::passing() of a voxel.
+glm::vec3 passing_of(const Voxels& voxels, uint32_t voxel) {
+    const uint64_t own = voxels.blocks(voxel);
+    glm::vec3 shares;
+    for (int axis = 0; axis < 3; ++axis)
+        shares[axis] = static_cast<float>(std::popcount(free_columns(own, axis))) / 64;
+    if (shares == glm::vec3(0.0f)) return shares;
+    uint64_t blocks[27];
+    const glm::ivec3 cell = voxels.grid().cell(voxels.occupied()[voxel]);
+    for (int i = 0; i < 27; ++i) {
+        const glm::ivec3 other = cell + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+        const uint32_t number = voxels.at(other);
+        blocks[i] = number != Voxels::kAir ? voxels.blocks(number) : voxels.is_air(other) ? 0 : kAllBlocks;
+    }
+    return connects_all(blocks) ? shares : glm::vec3(0.0f);
+}
+
 }  // namespace
 
-Air::Air(const Voxels& voxels) : grid_(voxels.grid()) {
+Air::Air(const Voxels& voxels)
+    : grid_(voxels.grid()),
+      numbers_(voxels.numbers().begin(), voxels.numbers().end()),
+      blocks_(voxels.occupied().size()),
+      passing_(voxels.occupied().size()) {
+    parallel_ranges(blocks_.size(), kOccupiedATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const auto voxel = static_cast<uint32_t>(i);
+            blocks_[i] = voxels.blocks(voxel);
+            passing_[i] = passing_of(voxels, voxel);
+        }
+    });
     const auto numbers = voxels.numbers();
     distances_.resize(numbers.size());
     std::ranges::transform(numbers, distances_.begin(),
@@ -49,6 +83,35 @@ Air::Air(const Voxels& voxels) : grid_(voxels.grid()) {
     }
 }
 
+/// Returns whether no block of an occupied voxel is on a line between two places on its sides, or in it.
+bool Air::sees_in(const glm::ivec3& cell, const glm::vec3& from, const glm::vec3& to) const {
+    const uint64_t blocks = blocks_[numbers_[grid_.number(cell)]];
+    if (blocks == kAllBlocks) return false;
+    constexpr auto kAlong = static_cast<float>(kBlocksAlong);
+    const glm::vec3 start = kAlong * (from - glm::vec3(cell)), way = kAlong * (to - from);
+    const auto block_at = [](const glm::vec3& place) {
+        return glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), glm::ivec3(kBlocksAlong - 1));
+    };
+    glm::ivec3 block = block_at(start);
+    const glm::ivec3 end = block_at(start + way);
+    while ((blocks & block_bit(block)) == 0) {
+        if (block == end) return true;
+        // To the next block, through the face that the line meets first.
+        float nearest = std::numeric_limits<float>::infinity();
+        int through = -1;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (block[axis] == end[axis]) continue;
+            const int border = end[axis] > block[axis] ? block[axis] + 1 : block[axis];
+            const float at = (static_cast<float>(border) - start[axis]) / way[axis];
+            if (at >= nearest && through >= 0) continue;
+            nearest = at;
+            through = axis;
+        }
+        block[through] += end[through] > block[through] ? 1 : -1;
+    }
+    return false;
+}
+
 bool Air::sees(const glm::vec3& from, const glm::vec3& to) const {
     const glm::vec3 way = to - from;
     const glm::ivec3 most = grid_.size - 1;
@@ -62,11 +125,12 @@ bool Air::sees(const glm::vec3& from, const glm::vec3& to) const {
     }
     // Crosses cubes of free cells at a time; ends when the last cell is in the cube.
     const int limit = 3 * (most.x + most.y + most.z + 3);
+    float entered = 0;  // share of the way at which the line came into the cell
     for (int i = 0; i < limit; ++i) {
-        const int free = distances_[grid_.number(cell)];
-        if (free == 0) return false;
+        const int distance = distances_[grid_.number(cell)], free = std::max(distance, 1);
         const glm::ivec3 away = glm::abs(end - cell);
-        if (std::max({away.x, away.y, away.z}) < free) return true;
+        const bool last = std::max({away.x, away.y, away.z}) < free;
+        if (last && distance > 0) return true;
         float nearest = std::numeric_limits<float>::infinity();
         int through = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -77,6 +141,10 @@ bool Air::sees(const glm::vec3& from, const glm::vec3& to) const {
             nearest = at;
             through = axis;
         }
+        const float left = last ? 1.0f : nearest;
+        if (distance == 0 && !sees_in(cell, from + way * entered, from + way * left)) return false;
+        if (last) return true;
+        entered = nearest;
         const glm::vec3 place = from + way * nearest;
         glm::ivec3 next;
         for (int axis = 0; axis < 3; ++axis) {

@@ -14,13 +14,12 @@ inline constexpr float kTouching = 1e-3f;
 /// Returns the octagon about a disc, in units of the grid's voxels.
 Polygon octagon_about(const Grid& grid, const glm::vec3& position, const glm::vec3& normal, float radius);
 
-/// Calls body(cell, area) for every voxel of the grid that a disc touches (an octagon about the disc, which
-/// touches a few more), with the area of the octagon inside it, in units of a voxel's face.
+/// Calls body(cell, part) for every voxel of the grid that a disc touches (an octagon about the disc, which
+/// touches a few more), with the part of the octagon inside it, in units of voxels.
 template <class Body>
 void for_each_voxel(const Grid& grid, const glm::vec3& position, const glm::vec3& normal, float radius,
                     const Body& body) {
-    for_each_voxel_of(grid.size, octagon_about(grid, position, normal, radius), kTouching,
-                      [&](const glm::ivec3& cell, const Polygon& part) { body(cell, part.area()); });
+    for_each_voxel_of(grid.size, octagon_about(grid, position, normal, radius), kTouching, body);
 }
 
 }  // namespace lucarne::gi::volume

@@ -11,6 +11,7 @@
 
 #include "gi/shared/brdf.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/volume/blocks.h"
 #include "gi/volume/disc_areas.h"
 #include "io/core/parallel.h"
 
@@ -18,7 +19,7 @@ namespace lucarne::gi::volume {
 namespace {
 
 constexpr size_t kSurfelsAPiece = 16384, kSurfelsAtOnce = 8 * kSurfelsAPiece;
-/// How many parts there may be, of 12 bytes each while they are made: some, and so many a surfel. A disc of a
+/// How many parts there may be, of 24 bytes each while they are made: some, and so many a surfel. A disc of a
 /// scan touches two voxels on the average.
 constexpr size_t kSomeParts = size_t{1} << 22, kPartsASurfel = 8;
 /// Of a disc, in voxels: those of a broken file would touch every voxel of the grid, one after the other.
@@ -72,9 +73,10 @@ void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) const
     const glm::vec3 normal = decode_octahedral(surfel.normal);
     const size_t first = target.size();
     float sum = 0;
-    for_each_voxel(grid_, middle, normal, radius, [&](const glm::ivec3& cell, float area) {
+    for_each_voxel(grid_, middle, normal, radius, [&](const glm::ivec3& cell, const Polygon& part) {
+        const float area = part.area();
         sum += area;
-        target.push_back({grid_.number(cell), {number, area}});
+        target.push_back({grid_.number(cell), {number, area}, blocks_of(part, cell, radius / grid_.voxel)});
     });
     const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
     if (grid_.part && !inside) sum = std::max(sum, octagon_about(grid_, middle, normal, radius).area());
@@ -122,9 +124,14 @@ Voxels VoxelMaker::finish() {
         voxels.starts_.push_back(voxels.starts_.back() + counts[cell]);
     }
     voxels.parts_.resize(voxels.starts_.back());
+    voxels.blocks_.resize(voxels.occupied_.size());
     std::vector<size_t> next(voxels.starts_.begin(), voxels.starts_.end() - 1);
     for (auto& piece : pieces_) {
-        for (const CellPart& part : piece) voxels.parts_[next[voxels.numbers_[part.cell]]++] = part.part;
+        for (const CellPart& part : piece) {
+            const uint32_t voxel = voxels.numbers_[part.cell];
+            voxels.parts_[next[voxel]++] = part.part;
+            voxels.blocks_[voxel] |= part.blocks;
+        }
         piece = {};
     }
     return voxels;

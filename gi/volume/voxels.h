@@ -46,6 +46,8 @@ class Voxels {
         return std::span(parts_).subspan(starts_[voxel], starts_[voxel + 1] - starts_[voxel]);
     }
     size_t all_parts() const { return parts_.size(); }
+    /// The blocks of an occupied voxel that discs touch (blocks.h).
+    uint64_t blocks(uint32_t voxel) const { return blocks_[voxel]; }
 
  private:
     friend class VoxelMaker;
@@ -54,6 +56,7 @@ class Voxels {
     std::vector<uint32_t> occupied_;  ///< cells
     std::vector<size_t> starts_;      ///< by occupied voxel: its first part; and the end
     std::vector<SurfelPart> parts_;
+    std::vector<uint64_t> blocks_;  ///< by occupied voxel
 };
 
 /// Voxels::divide() in steps.
@@ -71,6 +74,7 @@ class VoxelMaker {
     struct CellPart {
         uint32_t cell;
         SurfelPart part;
+        uint64_t blocks;
     };
     void add_parts(uint32_t surfel, std::vector<CellPart>& target) const;
 

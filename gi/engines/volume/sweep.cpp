@@ -80,7 +80,10 @@ void Sweeper::begin(Directions directions, std::span<const std::span<const glm::
 class Sweeper::Crossing {
  public:
     Crossing(const Level& level, const Directions& directions, const glm::vec3& way)
-        : level_(level), shape_(level.space.grid(), largest_axis(way)), forward_(way[shape_.along] > 0) {
+        : level_(level),
+          shape_(level.space.grid(), largest_axis(way)),
+          forward_(way[shape_.along] > 0),
+          squares_(way * way) {
         // Light comes from as many cells away across the plane as it advances along it.
         const float slope = 1 / std::abs(way[shape_.along]);
         const float across_u = std::abs(way[shape_.u]) * slope, across_v = std::abs(way[shape_.v]) * slope;
@@ -154,7 +157,11 @@ class Sweeper::Crossing {
             const auto& light = level_.radiance[order.voxels[i]];
             Vector sum{};
             for (const Way& w : ways_) sum += w.cosine * light[w.left].v;
-            now_[order.places[i]].v = sum / std::max(sum[3], kLeastKnown);
+            // What its openings let pass goes on.
+            const float passing = glm::dot(squares_, level_.space.air.passing(order.voxels[i]));
+            Vector& now = now_[order.places[i]].v;
+            const Vector own = sum / std::max(sum[3], kLeastKnown);
+            now = passing > 0 ? passing * now + (1 - passing) * own : own;
         }
     }
 
@@ -211,6 +218,7 @@ class Sweeper::Crossing {
     const Level& level_;
     const PlaneShape shape_;
     const bool forward_;
+    const glm::vec3 squares_;  ///< of the way's components: how much what each axis lets pass counts
     ptrdiff_t back_u_ = 0, back_v_ = 0;
     float straight_ = 0, beside_ = 0, over_ = 0, diagonal_ = 0;  ///< shares of the four cells before one
     /// A side that light meets and that by which it leaves, with their places beside a voxel.

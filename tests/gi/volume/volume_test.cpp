@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/volume/air.h"
+#include "gi/volume/blocks.h"
 #include "gi/volume/disc_areas.h"
 #include "gi/volume/faces.h"
 #include "gi/volume/voxels.h"
@@ -44,9 +46,9 @@ TEST(DiscAreas, PartsOfADiscAreThoseOfItsOctagon) {
         const float radius = .5f * uniform() + .01f;
         float sum = 0;
         std::map<uint32_t, float> parts;
-        for_each_voxel(grid, middle, normal, radius, [&](const glm::ivec3& cell, float area) {
-            sum += area;
-            EXPECT_TRUE(parts.emplace(grid.number(cell), area).second) << "a voxel twice";
+        for_each_voxel(grid, middle, normal, radius, [&](const glm::ivec3& cell, const Polygon& part) {
+            sum += part.area();
+            EXPECT_TRUE(parts.emplace(grid.number(cell), part.area()).second) << "a voxel twice";
         });
         const float octagon = 8 * std::tan(3.14159265f / 8) * radius * radius / (.25f * .25f);
         // Voxels overlap by the width within which they count as touched.
@@ -65,10 +67,10 @@ TEST(DiscAreas, PartsOfADiscAreThoseOfItsOctagon) {
 
 TEST(DiscAreas, AHalfOfADiscLiesOnEitherSideOfItsMiddle) {
     const Grid grid{glm::vec3(-1), 1, glm::ivec3(2)};
-    for_each_voxel(grid, glm::vec3(0, -.5f, -.5f), kZ, .3f, [&](const glm::ivec3& cell, float area) {
+    for_each_voxel(grid, glm::vec3(0, -.5f, -.5f), kZ, .3f, [&](const glm::ivec3& cell, const Polygon& part) {
         EXPECT_EQ(cell.y, 0);
         EXPECT_EQ(cell.z, 0);
-        EXPECT_NEAR(area, .5f * 8 * std::tan(3.14159265f / 8) * .09f, 1e-3f);
+        EXPECT_NEAR(part.area(), .5f * 8 * std::tan(3.14159265f / 8) * .09f, 1e-3f);
     });
 }
 
@@ -157,6 +159,54 @@ TEST(Voxels, WallsOfAnyDirectionStopDiagonalSteps) {
     }
 }
 
+TEST(Blocks, ThatADiscTouchesAreSetAndJoinedIfDiscsAreLarge) {
+    Polygon square;  // in the plane z = 2.3, over a quarter of the voxel
+    for (const glm::vec2& corner : {glm::vec2(0), glm::vec2(.45f, 0), glm::vec2(.45f), glm::vec2(0, .45f)})
+        square.add(glm::vec3(1, 1, 2.3f) + glm::vec3(corner, 0));
+    const uint64_t small = blocks_of(square, {1, 1, 2}, .05f);
+    EXPECT_EQ(small, 0x33u << 16) << "2 x 2 blocks of the second layer";
+    const uint64_t large = blocks_of(square, {1, 1, 2}, .15f);
+    EXPECT_EQ(large, uint64_t{0x33} << 16 | 0x33u) << "joined with those of the first";
+    EXPECT_EQ(blocks_of(square, {1, 1, 2}, .3f), kAllBlocks);
+    EXPECT_EQ(std::popcount(free_columns(small, 2)), 4 * (16 - 4));
+    EXPECT_EQ(std::popcount(free_columns(small, 0)), 4 * (16 - 2));
+    EXPECT_EQ(free_columns(kAllBlocks, 1), 0u);
+}
+
+TEST(Blocks, AWallSeparatesWhatIsFreeUnlessItHasAnOpening) {
+    uint64_t blocks[27] = {};
+    EXPECT_TRUE(connects_all(blocks));
+    for (int i = 9; i < 18; ++i) blocks[i] = 0xffffu << 16;  // a wall across the middle layer of voxels
+    EXPECT_FALSE(connects_all(blocks));
+    blocks[9] &= ~(uint64_t{1} << 16);  // a hole of one block in a corner
+    EXPECT_TRUE(connects_all(blocks));
+    blocks[13] = kAllBlocks;
+    EXPECT_FALSE(connects_all(blocks)) << "nothing is free in the middle";
+}
+
+TEST(Air, VoxelsOfAClosedWallLetNothingPassAndThoseAtAnOpeningTheirShare) {
+    std::vector<FlatSurfel> wall = flat::square(120, 1);
+    const Grid grid = grid_about(wall, 16);
+    const Voxels closed = divided(wall, grid);
+    const Air nothing(closed);
+    // At the rim of the square there is no wall beside it.
+    const auto inner = [](const glm::ivec3& cell) {
+        return cell.x > 3 && cell.y > 3 && cell.x < 12 && cell.y < 12;
+    };
+    for (uint32_t voxel = 0; voxel < closed.occupied().size(); ++voxel)
+        if (inner(grid.cell(closed.occupied()[voxel]))) {
+            EXPECT_EQ(nothing.passing(voxel), glm::vec3(0));
+        }
+    std::erase_if(wall, [](const FlatSurfel& s) { return std::abs(s.x - .5f) < .04f; });
+    const Voxels open = divided(wall, grid);
+    const Air air(open);
+    const glm::ivec3 beside(grid.place({.49f, .5f, 0}));
+    ASSERT_FALSE(open.is_air(beside));
+    const glm::vec3 passing = air.passing(open.at(beside));
+    EXPECT_EQ(passing.z, .5f) << "half of it is open";
+    EXPECT_EQ(passing.x, .5f) << "above and below the wall, which lies in the border of two blocks";
+}
+
 TEST(Air, SeesNothingThroughASealedRoom) {
     const auto surfels = flat::noisy_room(20000);
     const Voxels voxels = divided(surfels, grid_about(surfels, kVoxels));
@@ -179,7 +229,7 @@ TEST(Air, SeesNothingThroughASealedRoom) {
     }
 }
 
-TEST(Air, SkipsFreeVoxelsAndMissesNoOccupiedOne) {
+TEST(Air, SkipsFreeVoxelsAndMissesNoOccupiedBlock) {
     const auto surfels = sheet(glm::normalize(glm::vec3(1, 2, .4f)), 1, 60);
     const Voxels voxels = divided(surfels, Grid{glm::vec3(0), 1.0f / 16, glm::ivec3(32)});
     const Air air(voxels);
@@ -191,8 +241,12 @@ TEST(Air, SkipsFreeVoxelsAndMissesNoOccupiedOne) {
         };
         const glm::vec3 from = place(), to = place();
         bool free = true;
-        for (int k = 0; k <= 4000; ++k)
-            free &= voxels.is_air(glm::ivec3(glm::mix(from, to, static_cast<float>(k) / 4000)));
+        for (int k = 0; k <= 4000; ++k) {
+            const glm::vec3 at = glm::mix(from, to, static_cast<float>(k) / 4000);
+            const uint32_t voxel = voxels.at(glm::ivec3(at));
+            const glm::ivec3 block(glm::fract(at) * float{kBlocksAlong});
+            free &= voxel == Voxels::kAir || (voxels.blocks(voxel) & block_bit(block)) == 0;
+        }
         // Fine steps may miss a corner that the line cuts, never the other way round.
         EXPECT_TRUE(free || !air.sees(from, to));
         blocked += !free;
