@@ -235,25 +235,31 @@ void FirstBounce::look(const Face& face, size_t first, size_t last, std::vector<
         } else {
             factor = factor_of_small(face.normal, way, cluster.normal / std::sqrt(length2), cluster.area);
         }
-        if (factor > 0) rays.push_back({factor * cluster.power, cluster.face});
+        const glm::vec3 light = factor * cluster.power;
+        if (factor > 0) rays.push_back({light, luminance(light), cluster.face});
     }
 }
 
 /// Returns what a face sees of the rays that have more than their share of the light, and drops them: each
-/// is decided by a line of sight of its own, so that no other decides for it, and all others are left for the
-/// rest. Sets the sum of the rest to `whole`.
-glm::vec3 FirstBounce::take_brightest(uint32_t number, std::vector<Ray>& rays, float& whole) const {
+/// is decided by a line of sight of its own, so that no other decides for it. Where most of the light turns
+/// out to be hidden, shares of the rest become smaller. Sets `share` to the last one, which no ray that is
+/// left exceeds.
+glm::vec3 FirstBounce::take_brightest(uint32_t number, std::vector<Ray>& rays, float& share) const {
+    float whole = 0, hidden = 0;
     glm::vec3 sum(0.0f);
-    for (size_t before = 0; before != rays.size();) {
-        before = rays.size();
-        whole = 0;
-        for (const Ray& ray : rays) whole += luminance(ray.light);
+    do {
+        whole = hidden = 0;
+        for (const Ray& ray : rays) whole += ray.luminance;
+        share = whole / kLinesOfSight;
         std::erase_if(rays, [&](const Ray& ray) {
-            if (!(luminance(ray.light) * kLinesOfSight > whole)) return false;
-            if (space_.air.sees(places_[number], places_[ray.face])) sum += ray.light;
+            if (!(ray.luminance > share)) return false;
+            if (space_.air.sees(places_[number], places_[ray.face]))
+                sum += ray.light;
+            else
+                hidden += ray.luminance;
             return true;
         });
-    }
+    } while (hidden > 0.5f * whole);
     return sum;
 }
 
@@ -262,10 +268,8 @@ glm::vec3 FirstBounce::take_brightest(uint32_t number, std::vector<Ray>& rays, f
 /// seen the sum is exact.
 glm::vec3 FirstBounce::gather(uint32_t number, size_t first, size_t last, std::vector<Ray>& rays) const {
     look(space_.faces.all()[number], first, last, rays);
-    float whole = 0;
-    glm::vec3 sum = take_brightest(number, rays, whole), light(0.0f);
-    const float group = whole / kLinesOfSight;
-    float gathered = 0;  // of the present group
+    float group = 0, gathered = 0;  // luminance of a group, and of the present one so far
+    glm::vec3 sum = take_brightest(number, rays, group), light(0.0f);
     uint32_t seen = Faces::kNone;
     const auto finish = [&] {
         if (seen != Faces::kNone && space_.air.sees(places_[number], places_[seen])) sum += light;
@@ -274,9 +278,8 @@ glm::vec3 FirstBounce::gather(uint32_t number, size_t first, size_t last, std::v
         seen = Faces::kNone;
     };
     for (const Ray& ray : rays) {
-        const float own = luminance(ray.light);
         light += ray.light;
-        gathered += own;
+        gathered += ray.luminance;
         // The cluster in the middle of the group's light.
         if (seen == Faces::kNone && gathered >= 0.5f * group) seen = ray.face;
         if (gathered >= group) finish();

@@ -48,10 +48,11 @@ class FirstBounce {
     /// What a cluster sends to a face if nothing is in between.
     struct Ray {
         glm::vec3 light;  ///< W/m^2
+        float luminance;  ///< of the light
         uint32_t face;    ///< to which the line of sight goes
     };
     void look(const Face& face, size_t first, size_t last, std::vector<Ray>& rays) const;
-    glm::vec3 take_brightest(uint32_t face, std::vector<Ray>& rays, float& whole) const;
+    glm::vec3 take_brightest(uint32_t face, std::vector<Ray>& rays, float& share) const;
     glm::vec3 gather(uint32_t face, size_t first, size_t last, std::vector<Ray>& rays) const;
 
     const Space& space_;
