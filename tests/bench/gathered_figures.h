@@ -121,7 +121,7 @@ inline Result<void> figures_of_one_bounce(gi::Device& device, const BenchRun& ru
                         " (the paper: less error than imperfect shadow maps at 5 Hz each)",
                     "engine");
     for (const std::string& preset : run.cases<std::string>({"interactive", "high"}))
-        for (const std::string& engine : {"vpl", "micro"}) {
+        for (const std::string engine : {"vpl", "micro"}) {
             LUCARNE_ASSIGN(const viewer::Preset of_preset, viewer::find_preset(preset));
             gi::EngineSettings of = of_preset.engine;
             of.set(gi::kOnlyBounce, 1);
