@@ -114,6 +114,7 @@ TEST_F(MicroEngineTest, SharesOfSurfelsDoNotChangeTheLightOfPhotons) {
     AnalyticScene scene = room(material(1, 0, 1, 0));
     scene.settings.set(kOnlyBounce, 3);
     scene.settings.set(kLightPoints, LightPoints::photons);
+    scene.settings.set(kPhotons, 262'144);
     const double even = mean_luminance(render(scene).radiance);
     for (Surfel& s : scene.surfels)
         if (s.position.x + s.position.y > 2) s.area *= 0.1f;
