@@ -2,8 +2,8 @@
 // light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
 // (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [ENGINE] [--scale
 // S] [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). ENGINE:
-// micro or environment (gathered_figures.h) instead; or `gaitatzes [6] [7]`: these chapters of Gaitatzes 2012
-// (voxel_figures.h). This is a program and not a test; it takes about ten minutes
+// micro or environment (gathered_figures.h) or yue (paths_figures.h) instead; or `gaitatzes [6] [7]`: these
+// chapters of Gaitatzes 2012 (voxel_figures.h). This is a program and not a test; it takes about ten minutes
 // on two cores.
 #include <algorithm>
 #include <cmath>
@@ -20,6 +20,7 @@
 #include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/gathered_figures.h"
+#include "tests/bench/paths_figures.h"
 #include "tests/bench/scan.h"
 #include "tests/bench/stage.h"
 #include "tests/bench/voxel_figures.h"
@@ -203,6 +204,7 @@ Result<void> make_figures(const BenchRun& run) {
     fmt::print("{}; {} hardware threads\n", device->info().renderer, std::thread::hardware_concurrency());
     if (run.subject == "micro") return bench::figures_of_micro(*device, run);
     if (run.subject == "environment") return bench::figures_of_environment(*device, run);
+    if (run.subject == "yue") return bench::figures_of_paths(*device, run);
     if (run.subject == "gaitatzes") return bench::figures_of_gaitatzes(*device, run);
     const double only = run.option("only", 0);
     const auto wanted = [&](int figure) { return only == 0 || only == figure; };
@@ -225,5 +227,5 @@ Result<void> make_figures(const BenchRun& run) {
 int main(int argc, char** argv) {
     return lucarne::bench::bench_main(
         argc, argv, lucarne::make_figures,
-        {.options = {"only"}, .subjects = {"micro", "environment", "gaitatzes"}, .parts = {"6", "7"}});
+        {.options = {"only"}, .subjects = {"micro", "environment", "yue", "gaitatzes"}, .parts = {"6", "7"}});
 }
