@@ -104,7 +104,7 @@ inline Result<void> times_of_paths(Stage& stage, const BenchRun& run, const std:
                            for (size_t k = 0; k < lights; ++k)
                                scene.lights[k].position.x += .01 * static_cast<double>(k + i + 1);
                        }));
-        row_of_steps(fmt::format("{} lights, all move", lights), moved);
+        row_of_steps(fmt::format("{} moved", lights), moved);
     }
     return {};
 }
