@@ -62,8 +62,8 @@ inline constexpr Option<LightPoints> kLightPoints{{
     .kind = OptionKind::choice,
     .key = "light_points",
     .label = "light points",
-    .help =
-        "How light is exchanged before the last bounce: between places, or by photons, which show caustics",
+    .help = "How light is exchanged before the last bounce: between places, or by photons, which keep "
+            "specular light directed",
     .cost = "photons take seconds for each set of points first, and are right where places are too few",
     .choices = kLightPointKinds,
     .defaults = {int64_t{0}, int64_t{0}, int64_t{1}},

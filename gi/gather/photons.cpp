@@ -66,7 +66,6 @@ struct Source {
     size_t surfel, slot;  ///< of the tracer; of the tree
     bool back, specular;
 };
-constexpr size_t kSources = 4;  ///< of each surfel
 
 /// Everything that sends photons, by the flux that it sends.
 class Sources {
@@ -74,12 +73,16 @@ class Sources {
     /// `leaves`: the slots of surfels; `sides`: of each slot; `light`: what each surfel sends out evenly.
     Sources(const LitTree& scene, std::span<const uint32_t> leaves, std::span<const Sides> sides,
             std::span<const SideLight> light, const SideLobes& lobes)
-        : scene_(scene), leaves_(leaves), sides_(sides), light_(light), lobes_(lobes) {
-        const size_t kinds = lobes.light.empty() ? 2 : kSources;
-        ends_.reserve(leaves.size() * kSources);
+        : scene_(scene),
+          leaves_(leaves),
+          sides_(sides),
+          light_(light),
+          lobes_(lobes),
+          kinds_(lobes.light.empty() ? 2 : 4) {
+        ends_.reserve(leaves.size() * kinds_);
         double sum = 0;
-        for (size_t i = 0; i < leaves.size() * kSources; ++i) {
-            if (i % kSources < kinds) sum += std::max(0.0f, mean(flux(source(i))));
+        for (size_t i = 0; i < leaves.size() * kinds_; ++i) {
+            sum += std::max(0.0f, mean(flux(source(i))));
             ends_.push_back(sum);
         }
     }
@@ -100,7 +103,7 @@ class Sources {
 
  private:
     Source source(size_t i) const {
-        const size_t surfel = i / kSources, kind = i % kSources;
+        const size_t surfel = i / kinds_, kind = i % kinds_;
         return {surfel, leaves_[surfel], (kind & 1) != 0, kind >= 2};
     }
 
@@ -109,6 +112,7 @@ class Sources {
     std::span<const Sides> sides_;
     std::span<const SideLight> light_;
     const SideLobes& lobes_;
+    const size_t kinds_;  ///< of sources a surfel: of two sides, of one lobe or two
     std::vector<double> ends_;
 };
 
