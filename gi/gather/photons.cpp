@@ -9,9 +9,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "gi/gather/light_sources.h"
 #include "gi/lighting/area_points.h"
 #include "gi/shared/lobe.h"
-#include "gi/shared/surfel_code.h"
 #include "gi/tracing/exposure.h"
 #include "gi/tracing/scatter.h"
 #include "io/core/parallel.h"
@@ -27,10 +27,6 @@ constexpr uint32_t kPhotonsOfANode = 16, kPointsOfANode = 16;
 constexpr int kLevelsUp = 3;
 /// Nodes thicker than this share of their bound hold more than one surface, or a bent one.
 constexpr float kFlat = 0.25f;
-
-float mean(const glm::vec3& v) {
-    return (v.x + v.y + v.z) / 3;
-}
 
 /// A side of a slot: the area of it that light can meet, m^2, and what arrived there.
 struct Side {
@@ -61,78 +57,22 @@ void pull(const SurfelTree& tree, std::vector<Sides>& sides) {
     });
 }
 
-/// Where photons start: one of the two lobes of a side of a surfel.
-struct Source {
-    size_t surfel, slot;  ///< of the tracer; of the tree
-    bool back, specular;
-};
-
-/// Everything that sends photons, by the flux that it sends.
-class Sources {
- public:
-    /// `leaves`: the slots of surfels; `sides`: of each slot; `light`: what each surfel sends out evenly.
-    Sources(const LitTree& scene, std::span<const uint32_t> leaves, std::span<const Sides> sides,
-            std::span<const SideLight> light, const SideLobes& lobes)
-        : scene_(scene),
-          leaves_(leaves),
-          sides_(sides),
-          light_(light),
-          lobes_(lobes),
-          kinds_(lobes.light.empty() ? 2 : 4) {
-        ends_.reserve(leaves.size() * kinds_);
-        double sum = 0;
-        for (size_t i = 0; i < leaves.size() * kinds_; ++i) {
-            sum += std::max(0.0f, mean(flux(source(i))));
-            ends_.push_back(sum);
-        }
-    }
-    /// W, the mean of the three colours.
-    double total() const { return ends_.empty() ? 0 : ends_.back(); }
-    /// Returns the source at a share of the total, 0 to 1.
-    Source at(double share) const {
-        const auto found = std::upper_bound(ends_.begin(), ends_.end(), share * total());
-        return source(std::min(static_cast<size_t>(found - ends_.begin()), ends_.size() - 1));
-    }
-    /// Returns what a source sends out, W. Of specular lobes a part may be below the surface.
-    glm::vec3 flux(const Source& s) const {
-        const float area = sides_[s.slot][s.back ? 1 : 0].area;
-        const uint32_t surfel = scene_.tree().surfels[s.slot];
-        const SideLight& light = s.specular ? lobes_.light[surfel] : light_[surfel];
-        return (s.specular ? area : kPi * area) * (s.back ? light.back : light.front);
-    }
-
- private:
-    Source source(size_t i) const {
-        const size_t surfel = i / kinds_, kind = i % kinds_;
-        return {surfel, leaves_[surfel], (kind & 1) != 0, kind >= 2};
-    }
-
-    const LitTree& scene_;
-    std::span<const uint32_t> leaves_;
-    std::span<const Sides> sides_;
-    std::span<const SideLight> light_;
-    const SideLobes& lobes_;
-    const size_t kinds_;  ///< of sources a surfel: of two sides, of one lobe or two
-    std::vector<double> ends_;
-};
-
 struct Photon {
     glm::vec3 origin, direction, flux;
 };
 
-/// Returns a photon that leaves a side at a direction that belongs to a point of the unit square. `surfel`:
-/// its number in `lobes`.
-std::optional<Photon> leave(const SideLobes& lobes, uint32_t surfel, const Source& source, const Surfel& disc,
+/// Returns a photon that leaves a side at a direction that belongs to a point of the unit square.
+std::optional<Photon> leave(const SideLobes& lobes, const LightSource& source, const Surfel& disc,
                             const glm::vec3& flux, const glm::dvec2& square) {
     const glm::vec3 normal = source.back ? -disc.normal : disc.normal;
     const glm::vec3 origin = tracing::offset_origin(disc.position, normal, disc.radius);
     if (!source.specular) return Photon{origin, tracing::cosine_power_direction(normal, 1, square), flux};
-    const SideLight &both = lobes.light[surfel], &to = lobes.directions[surfel];
+    const SideLight &both = lobes.light[source.surfel], &to = lobes.directions[source.surfel];
     const glm::vec3 light = source.back ? both.back : both.front;
     const glm::vec3 directions = source.back ? to.back : to.front;
     const float size = glm::length(directions);
     if (!(size > 0)) return std::nullopt;
-    const float exponent = lobe_exponent(size / mean(light));
+    const float exponent = lobe_exponent(size / mean_colour(light));
     const glm::vec3 direction = tracing::cosine_power_direction(directions / size, exponent, square);
     const float cosine = glm::dot(direction, normal);
     if (!(cosine > 0)) return std::nullopt;
@@ -151,7 +91,7 @@ struct Hit {
 class Walk {
  public:
     Walk(const tracing::SurfelTracer& tracer, std::span<const Material> materials,
-         const Photons::Settings& settings)
+         const ExchangeSettings& settings)
         : tracer_(tracer), materials_(materials), settings_(settings) {}
 
     /// Adds where a photon arrives.
@@ -181,20 +121,7 @@ class Walk {
  private:
     const tracing::SurfelTracer& tracer_;
     std::span<const Material> materials_;
-    const Photons::Settings& settings_;
-};
-
-/// What a surfel sends out of the light that comes to a side.
-struct Reflected {
-    glm::vec3 even{0.0f};                    ///< radiance, W/(sr m^2)
-    glm::vec3 lobe{0.0f}, directions{0.0f};  ///< a specular lobe (lobe.h)
-
-    Reflected(const Reflectance& r, const Side& side) {
-        if (!(side.area > 0)) return;
-        even = r.kd / kPi * side.flux / side.area;
-        lobe = r.ks * side.flux / side.area;
-        directions = r.ks * lobe_mean_cosine(r.exponent) * side.directions / side.area;
-    }
+    const ExchangeSettings& settings_;
 };
 
 /// Returns whether the irradiance of a side is known well.
@@ -210,45 +137,35 @@ bool flat(const SurfelTree& tree, size_t slot) {
 
 }  // namespace
 
-Result<void> Photons::set_surfels(const LitTree& scene) {
+void Photons::set_surfels(const LitTree& scene, const TracedTree& traced) {
     const SurfelTree& tree = scene.tree();
-    std::vector<Surfel> surfels;
-    slot_of_.clear();
     parent_of_.assign(tree.nodes.size(), kNoSurfel);
     for (size_t slot = 0; slot < tree.surfels.size(); ++slot) {
         const int child = tree.nodes[slot / 8].child[slot % 8];
         if (child >= 0) parent_of_[static_cast<size_t>(child)] = static_cast<uint32_t>(slot);
-        if (tree.surfels[slot] == kNoSurfel) continue;
-        const FlatSurfel& s = scene.surfels()[tree.surfels[slot]];
-        const Surfel surfel{.position = {s.x, s.y, s.z},
-                            .normal = decode_octahedral(s.normal),
-                            .albedo = decode_albedo(s.albedo),
-                            .radius = s.radius,
-                            .area = tree.areas[slot],
-                            .material = s.material};
-        if (!tracing::has_disc(surfel)) continue;
-        surfels.push_back(surfel);
-        slot_of_.push_back(static_cast<uint32_t>(slot));
     }
-    LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(std::move(surfels)));
-    exposures_ = tracing::exposures(*tracer_);
-    return {};
+    exposures_ = tracing::exposures(*traced.tracer);
 }
 
-void Photons::trace(const LitTree& scene, std::span<const Material> materials, const Settings& settings,
-                    std::vector<SideLight>& light, SideLobes& lobes, const std::atomic<bool>* stop) const {
+void Photons::trace(const LitTree& scene, const TracedTree& traced, std::span<const Material> materials,
+                    const ExchangeSettings& settings, std::vector<SideLight>& light, SideLobes& lobes,
+                    const std::atomic<bool>* stop) const {
     const SurfelTree& tree = scene.tree();
+    const std::vector<Surfel>& surfels = traced.tracer->surfels();
+    const std::vector<uint32_t>& slot_of = traced.slot_of;
     std::vector<Sides> sides(tree.surfels.size());
-    for (size_t i = 0; i < slot_of_.size(); ++i) {
-        const float radius = tracer_->surfels()[i].radius;
-        const float area = kPi * radius * radius / tracing::kExposurePoints;
+    std::vector<float> areas;
+    areas.reserve(2 * slot_of.size());
+    for (size_t i = 0; i < slot_of.size(); ++i) {
+        const float area = kPi * surfels[i].radius * surfels[i].radius / tracing::kExposurePoints;
         const auto [front, back] = exposures_[i];
-        sides[slot_of_[i]] = {Side{.area = area * front, .points = front},
-                              Side{.area = area * back, .points = back}};
+        sides[slot_of[i]] = {Side{.area = area * front, .points = front},
+                             Side{.area = area * back, .points = back}};
+        for (const Side& side : sides[slot_of[i]]) areas.push_back(side.area);
     }
-    const Sources sources(scene, slot_of_, sides, light, lobes);
-    const Walk walk(*tracer_, materials, settings);
-    const uint64_t count = sources.total() > 0 ? settings.photons : 0;
+    const LightSources sources(traced.surfel_of, areas, light, lobes);
+    const Walk walk(*traced.tracer, materials, settings);
+    const uint64_t count = sources.total() > 0 ? settings.sources : 0;
     const double each = sources.total() / static_cast<double>(std::max<uint64_t>(count, 1));
     Random shifts(settings.seed, count);
     const double shift_u = shifts.uniform(), shift_v = shifts.uniform();
@@ -261,31 +178,27 @@ void Photons::trace(const LitTree& scene, std::span<const Material> materials, c
                 Random random(settings.seed, i);
                 // Neighbours leave one after the other, in directions that are even among them.
                 const auto number = static_cast<double>(i);
-                const Source source = sources.at((number + random.uniform()) / static_cast<double>(count));
+                const LightSource source =
+                    sources.at((number + random.uniform()) / static_cast<double>(count));
                 const glm::dvec2 square = glm::fract(glm::dvec2(shift_u, shift_v) + number * kR2);
                 const glm::vec3 power = sources.flux(source);
-                const glm::vec3 flux = power * static_cast<float>(each / mean(power));
-                const auto photon = leave(lobes, tree.surfels[source.slot], source,
-                                          tracer_->surfels()[source.surfel], flux, square);
+                const glm::vec3 flux = power * static_cast<float>(each / mean_colour(power));
+                const auto photon = leave(lobes, source, surfels[source.traced], flux, square);
                 if (photon) walk.follow(*photon, random, hits[begin / kPhotonsATask]);
             }
         });
         // In their order, so that sums are the same on every run.
         for (const std::vector<Hit>& found : hits)
             for (const Hit& hit : found) {
-                Side& side = sides[slot_of_[hit.surfel]][hit.back ? 1 : 0];
+                Side& side = sides[slot_of[hit.surfel]][hit.back ? 1 : 0];
                 side.flux += hit.flux;
-                const glm::vec3& normal = tracer_->surfels()[hit.surfel].normal;
-                side.directions += mean(hit.flux) * glm::reflect(hit.direction, normal);
+                const glm::vec3& normal = surfels[hit.surfel].normal;
+                side.directions += mean_colour(hit.flux) * glm::reflect(hit.direction, normal);
                 ++side.photons;
             }
     }
     pull(tree, sides);
-    if (settings.only_last) {
-        light.assign(light.size(), {});
-        lobes.light.assign(lobes.light.size(), {});
-        lobes.directions.assign(lobes.directions.size(), {});
-    }
+    if (settings.only_last) clear(light, lobes);
     // Returns the side of a node that tells what a side of a leaf receives.
     const auto about = [&](size_t slot, size_t side) -> const Side& {
         for (int up = 0; up < kLevelsUp && !known(sides[slot][side]); ++up) {
@@ -296,19 +209,16 @@ void Photons::trace(const LitTree& scene, std::span<const Material> materials, c
         }
         return sides[slot][side];
     };
-    parallel_ranges(slot_of_.size(), kLeavesATask, [&](size_t first, size_t last) {
+    parallel_ranges(slot_of.size(), kLeavesATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
-            const uint32_t surfel = tree.surfels[slot_of_[i]];
-            const Surfel& disc = tracer_->surfels()[i];
-            const Reflectance r = make_reflectance(materials[disc.material % materials.size()], disc.albedo);
-            const Reflected front(r, about(slot_of_[i], 0)), back(r, about(slot_of_[i], 1));
-            light[surfel].front += front.even;
-            light[surfel].back += back.even;
-            if (lobes.light.empty()) continue;  // nothing is glossy
-            lobes.light[surfel].front += front.lobe;
-            lobes.light[surfel].back += back.lobe;
-            lobes.directions[surfel].front += front.directions;
-            lobes.directions[surfel].back += back.directions;
+            const Reflectance r =
+                make_reflectance(materials[surfels[i].material % materials.size()], surfels[i].albedo);
+            for (size_t side = 0; side < 2; ++side) {
+                const Side& known = about(slot_of[i], side);
+                if (!(known.area > 0)) continue;
+                reflect(r, {known.flux / known.area, known.directions / known.area}, traced.surfel_of[i],
+                        side == 1, light, lobes);
+            }
         }
     });
 }

@@ -2,14 +2,14 @@
 
 #include <atomic>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "gi/gather/exchange.h"
 #include "gi/gather/lit_tree.h"
+#include "gi/gather/traced_tree.h"
 #include "gi/shared/material.h"
 #include "gi/tracing/exposure.h"
-#include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi {
 
@@ -20,26 +20,19 @@ namespace lucarne::gi {
 /// shares of the surface would not do: in gaps of scans a surfel with a small share receives much light.
 class Photons {
  public:
-    /// Takes the surfels of a tree. Errors: Embree's (out of memory).
-    Result<void> set_surfels(const LitTree& scene);
+    /// Takes the surfels of a tree. `traced` is made from it.
+    void set_surfels(const LitTree& scene, const TracedTree& traced);
 
-    struct Settings {
-        uint64_t photons = 0;    ///< how many leave the lit surfels
-        uint32_t bounces = 0;    ///< reflections that they have after that, at least one
-        bool only_last = false;  ///< compute the light of the last one alone
-        uint64_t seed = 0;
-    };
-    /// Adds what the surfels reflect of photons to what they send out, evenly (`light`) and by lobes, both by
-    /// surfel; photons leave by these as well. Replaces them if `only_last`. No lobes: nothing is glossy. The
-    /// same arguments give the same light, whatever the number of threads. Gives up if `stop` becomes true.
-    void trace(const LitTree& scene, std::span<const Material> materials, const Settings& settings,
-               std::vector<SideLight>& light, SideLobes& lobes,
+    /// Adds what the surfels reflect of photons (`settings.sources` of them) to what they send out, evenly
+    /// (`light`) and by lobes, both by surfel; photons leave by these as well. No lobes: nothing is glossy.
+    /// The same arguments give the same light, whatever the number of threads. Gives up if `stop` becomes
+    /// true.
+    void trace(const LitTree& scene, const TracedTree& traced, std::span<const Material> materials,
+               const ExchangeSettings& settings, std::vector<SideLight>& light, SideLobes& lobes,
                const std::atomic<bool>* stop = nullptr) const;
 
  private:
-    std::unique_ptr<tracing::SurfelTracer> tracer_;
-    std::vector<uint32_t> slot_of_;             ///< of each surfel of tracer_: its slot in the tree
-    std::vector<tracing::Exposure> exposures_;  ///< of each surfel of tracer_
+    std::vector<tracing::Exposure> exposures_;  ///< of each traced surfel
     std::vector<uint32_t> parent_of_;           ///< of each node: the slot whose child it is
 };
 

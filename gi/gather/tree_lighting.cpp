@@ -47,6 +47,7 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
     tree_of_.reset();
     light_of_.reset();
     photons_.reset();
+    traced_.reset();
     LUCARNE_TRY(lit_.set_surfels(frame));
     LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));
     tree_of_ = cuts_.light;
@@ -56,10 +57,10 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
 Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, LightPoints points,
                                     std::vector<SideLight>& light) {
     const bool by_photons = points == LightPoints::photons && settings.bounces > 0;
-    const Photons::Settings photons{.photons = frame.settings[kPhotons],
-                                    .bounces = settings.bounces,
-                                    .only_last = settings.only_last,
-                                    .seed = settings.seed};
+    const ExchangeSettings photons{.sources = frame.settings[kPhotons],
+                                   .bounces = settings.bounces,
+                                   .only_last = settings.only_last,
+                                   .seed = settings.seed};
     lobes_ = settings.bounces == 0 || !settings.only_last ? lit_.lobes() : SideLobes{};
     if (by_photons) settings.bounces = 0;
     {
@@ -72,13 +73,15 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
     }
     if (frame.stopped() || !by_photons) return {};
     const TimedPass pass(frame, "photons");
+    if (!traced_) {
+        LUCARNE_ASSIGN(traced_, TracedTree::create(lit_));
+    }
     if (!photons_) {
-        Photons made;
-        LUCARNE_TRY(made.set_surfels(lit_));
-        photons_ = std::move(made);
+        photons_.emplace();
+        photons_->set_surfels(lit_, *traced_);
     }
     SideLobes lobes = lit_.lobes_of_surfels();
-    photons_->trace(lit_, device_materials(frame.materials), photons, light, lobes, frame.stop);
+    photons_->trace(lit_, *traced_, device_materials(frame.materials), photons, light, lobes, frame.stop);
     lobes_ = lit_.pulled(lobes);
     return {};
 }

@@ -13,6 +13,7 @@
 #include "gi/gather/lit_tree.h"
 #include "gi/gather/photons.h"
 #include "gi/gather/radiosity.h"
+#include "gi/gather/traced_tree.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
 
@@ -78,9 +79,10 @@ class TreeLighting {
     Radiosity radiosity_;
     SceneRevisions scene_;  ///< of the frame that is drawn
     LightCutRevisions cuts_;
-    std::optional<uint64_t> sky_of_;   ///< revision of the environment that the sky is made from
-    std::optional<Photons> photons_;   ///< of the tree, once something asks for them
-    std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
+    std::optional<uint64_t> sky_of_;    ///< revision of the environment that the sky is made from
+    std::optional<TracedTree> traced_;  ///< of the tree, once something asks for it
+    std::optional<Photons> photons_;    ///< likewise
+    std::optional<uint64_t> tree_of_;   ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()
     SideLobes lobes_;               ///< by slot, that belong to it

@@ -14,6 +14,9 @@ namespace lucarne::gi {
 
 LUCARNE_CONST float kLargestLobeExponent = 1e5f;  // sums in floats cannot tell narrower lobes apart
 
+LUCARNE_FN float mean_colour(vec3 rgb) {
+    return (rgb.x + rgb.y + rgb.z) / 3.0f;
+}
 // Returns the mean of the cosine to the axis of a lobe cos^n over the half space about it.
 LUCARNE_FN float lobe_mean_cosine(float exponent) {
     return (exponent + 1.0f) / (exponent + 2.0f);
@@ -29,7 +32,7 @@ LUCARNE_FN float lobe_exponent(float mean_cosine) {
 LUCARNE_FN float lobe_radiance(vec3 light, vec3 directions, vec3 to) {
     float size = length(directions), along = dot(directions, to);
     if (!(along > 0.0f)) return 0.0f;
-    float exponent = lobe_exponent(3.0f * size / (light.x + light.y + light.z));
+    float exponent = lobe_exponent(size / mean_colour(light));
     return (exponent + 2.0f) / (2.0f * kPi) * pow(min(along / size, 1.0f), exponent);
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gi/gather/lit_tree.h"
+#include "gi/tracing/surfel_tracer.h"
+
+namespace lucarne::gi {
+
+/// The surfels of a tree that rays can hit, in the order of its slots.
+struct TracedTree {
+    /// Errors: Embree's (out of memory).
+    static Result<TracedTree> create(const LitTree& scene);
+
+    std::unique_ptr<tracing::SurfelTracer> tracer;
+    std::vector<uint32_t> slot_of;    ///< of each surfel of `tracer`: its slot in the tree
+    std::vector<uint32_t> surfel_of;  ///< its number in the light cut
+};
+
+}  // namespace lucarne::gi
