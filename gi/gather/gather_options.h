@@ -56,14 +56,14 @@ inline constexpr Option<uint32_t> kRadiosityLevel{{
 }};
 
 /// How light comes to the surfels that pixels gather from, after its first reflection.
-enum class LightPoints : uint8_t { radiosity, photons };
-inline constexpr std::array<std::string_view, 2> kLightPointKinds = {"radiosity", "photons"};
+enum class LightPoints : uint8_t { radiosity, photons, vpls };
+inline constexpr std::array<std::string_view, 3> kLightPointKinds = {"radiosity", "photons", "vpls"};
 inline constexpr Option<LightPoints> kLightPoints{{
     .kind = OptionKind::choice,
     .key = "light_points",
     .label = "light points",
-    .help = "How light is exchanged before the last bounce: between places, or by photons, which keep "
-            "specular light directed",
+    .help = "How light is exchanged before the last bounce: between places, by photons, or by VPLs; photons "
+            "and VPLs keep specular light directed",
     .cost = "photons take seconds for each set of points first, and are right where places are too few",
     .choices = kLightPointKinds,
     .defaults = {int64_t{0}, int64_t{0}, int64_t{1}},

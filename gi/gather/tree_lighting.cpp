@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gi/gather/gather_options.h"
+#include "gi/gather/virtual_lights.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/light_options.h"
@@ -56,13 +57,14 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
 
 Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, LightPoints points,
                                     std::vector<SideLight>& light) {
-    const bool by_photons = points == LightPoints::photons && settings.bounces > 0;
-    const ExchangeSettings photons{.sources = frame.settings[kPhotons],
-                                   .bounces = settings.bounces,
-                                   .only_last = settings.only_last,
-                                   .seed = settings.seed};
+    const bool by_rays = points != LightPoints::radiosity && settings.bounces > 0;
+    const bool by_vpls = points == LightPoints::vpls;
+    const ExchangeSettings rays{.sources = by_vpls ? frame.settings[kVpls] : frame.settings[kPhotons],
+                                .bounces = settings.bounces,
+                                .only_last = settings.only_last,
+                                .seed = settings.seed};
     lobes_ = settings.bounces == 0 || !settings.only_last ? lit_.lobes() : SideLobes{};
-    if (by_photons) settings.bounces = 0;
+    if (by_rays) settings.bounces = 0;
     {
         const TimedPass pass(frame, "radiosity");
         if (settings.bounces > 0 || settings.sky)
@@ -71,17 +73,22 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
         if (frame.stopped()) return {};
         LUCARNE_TRY(radiosity_.compute(*opencl_, lit_, gatherer_, settings, light, frame.stop));
     }
-    if (frame.stopped() || !by_photons) return {};
-    const TimedPass pass(frame, "photons");
+    if (frame.stopped() || !by_rays) return {};
+    const TimedPass pass(frame, by_vpls ? "VPLs" : "photons");
     if (!traced_) {
         LUCARNE_ASSIGN(traced_, TracedTree::create(lit_));
     }
-    if (!photons_) {
-        photons_.emplace();
-        photons_->set_surfels(lit_, *traced_);
-    }
+    const std::vector<Material> materials = device_materials(frame.materials);
     SideLobes lobes = lit_.lobes_of_surfels();
-    photons_->trace(lit_, *traced_, device_materials(frame.materials), photons, light, lobes, frame.stop);
+    if (by_vpls) {
+        add_light_of_vpls(*traced_, materials, rays, light, lobes, frame.stop);
+    } else {
+        if (!photons_) {
+            photons_.emplace();
+            photons_->set_surfels(lit_, *traced_);
+        }
+        photons_->trace(lit_, *traced_, materials, rays, light, lobes, frame.stop);
+    }
     lobes_ = lit_.pulled(lobes);
     return {};
 }

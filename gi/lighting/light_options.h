@@ -39,4 +39,17 @@ inline constexpr Option<uint32_t> kLightSamples{{
     .cheaper = -1,
 }};
 
+inline constexpr Option<uint32_t> kVpls{{
+    .kind = OptionKind::integer,
+    .key = "vpls",
+    .label = "VPLs",
+    .help = "Virtual point lights",
+    .cost = "virtual point lights: time grows with them; vpl needs an atlas of shadow maps for them",
+    .least = 1,
+    .most = 65536,
+    .slider = {16, 4096, true},
+    .defaults = {int64_t{64}, int64_t{256}, int64_t{1024}},
+    .cheaper = -1,
+}};
+
 }  // namespace lucarne::gi

@@ -14,6 +14,12 @@ constexpr uint64_t kExposureSeed = 0xe4705;
 
 }  // namespace
 
+bool is_exposed(const SurfelTracer& tracer, size_t surfel, const glm::vec3& point, const glm::vec3& normal) {
+    const glm::vec3 origin = point + normal * (kHeight * tracer.surfels()[surfel].radius);
+    const auto hit = tracer.first_hit(origin, -normal);
+    return hit && hit->surfel == surfel;
+}
+
 std::vector<Exposure> exposures(const SurfelTracer& tracer) {
     const std::vector<Surfel>& surfels = tracer.surfels();
     std::vector<Exposure> result(surfels.size());
@@ -24,10 +30,7 @@ std::vector<Exposure> exposures(const SurfelTracer& tracer) {
             const auto seen = [&](const glm::vec3& normal) {
                 uint8_t points = 0;
                 for (uint32_t k = 0; k < kExposurePoints; ++k) {
-                    const glm::vec3 origin =
-                        point_on_disc(surfel, random) + normal * (kHeight * surfel.radius);
-                    const auto hit = tracer.first_hit(origin, -normal);
-                    if (hit && hit->surfel == i) ++points;
+                    if (is_exposed(tracer, i, point_on_disc(surfel, random), normal)) ++points;
                 }
                 return points;
             };

@@ -7,6 +7,10 @@
 
 namespace lucarne::gi::tracing {
 
+/// Returns whether a point of the disc of a surfel is seen from straight above; `normal` points away from
+/// that side.
+bool is_exposed(const SurfelTracer& tracer, size_t surfel, const glm::vec3& point, const glm::vec3& normal);
+
 /// How many points of a disc are seen from straight above each of its sides, of kExposurePoints.
 struct Exposure {
     uint8_t front = 0, back = 0;

@@ -18,6 +18,7 @@
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/gathered_figures.h"
 #include "tests/bench/paths_figures.h"
@@ -32,7 +33,7 @@ using bench::BenchRun, bench::heading, bench::Scan, bench::Stage;
 
 /// Sets the number of VPLs and an atlas that gives each map about 64 x 64 texels, as in the paper.
 void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
-    settings.set(gi::vpl::kVpls, vpls);
+    settings.set(gi::kVpls, vpls);
     settings.set(gi::vpl::kAtlas,
                  static_cast<uint32_t>(std::ceil(64 * std::sqrt(static_cast<double>(vpls)))));
 }

@@ -1,5 +1,6 @@
 // The experiments of the papers behind the engines that gather light, repeated: Harada 2014 (table 1 and fig.
-// 5 on scenes of ours) and Ritschel et al. 2009 (figs 7 to 10, 12, 13).
+// 5 on scenes of ours) and Ritschel et al. 2009 (figs 6 to 10, 12 to
+// 14; fig. 11 has no counterpart: all pixels of our micro-buffers are rays).
 #pragma once
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/environment/options.h"
 #include "gi/gather/gather_options.h"
+#include "gi/lighting/light_options.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
 #include "tests/bench/stage.h"
@@ -67,7 +69,7 @@ inline Result<void> print_against(const std::string& name, const Stage::Picture&
                                   const Scan::Truth& truth) {
     LUCARNE_ASSIGN(const auto error, gi::compare_with_halves(picture.pixels, truth.first, truth.second));
     double gather = 0;
-    for (const char* pass : {"radiosity", "photons", "gather", "upsample"})
+    for (const char* pass : {"radiosity", "photons", "VPLs", "gather", "upsample"})
         gather += pass_seconds(picture.last, pass);
     fmt::print("{:>24} {:>12.2g} {:>10.1g} {:>10.2f} {:>9.2f} {:>9.2f} {:>12.0f}\n", name, error.rel_mse,
                error.standard_error,
@@ -131,7 +133,8 @@ inline Result<void> figures_of_one_bounce(gi::Device& device, const BenchRun& ru
     return {};
 }
 
-/// Figs 7 and 8: the second bounce, from light that radiosity or photons brought to surfels.
+/// Figs 6 to 8: the second bounce, from light that VPLs, radiosity or photons brought to surfels, and by VPLs
+/// without a gather.
 inline Result<void> figures_of_light_points(gi::Device& device, const BenchRun& run) {
     using Scene = std::string;
     for (const Scene& scene : run.cases<Scene>({"cornell", "cornell-glossy", "nave"})) {
@@ -144,7 +147,7 @@ inline Result<void> figures_of_light_points(gi::Device& device, const BenchRun& 
         gi::EngineSettings settings = stage.settings();
         settings.set(gi::kOnlyBounce, 2);
         LUCARNE_ASSIGN(const Scan::Truth truth, stage.truth(settings, std::max<uint64_t>(run.count(256), 2)));
-        columns_against(fmt::format("figs 7 and 8: {}, bounce 2, {}x{}", scene, size.width, size.height),
+        columns_against(fmt::format("figs 6 to 8: {}, bounce 2, {}x{}", scene, size.width, size.height),
                         "light points");
         settings.set(gi::kLightPoints, gi::LightPoints::radiosity);
         for (const int64_t level : run.cases<int64_t>({10, 12, 14})) {
@@ -157,6 +160,44 @@ inline Result<void> figures_of_light_points(gi::Device& device, const BenchRun& 
             settings.set(gi::kPhotons, static_cast<uint64_t>(photons));
             LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture("micro", settings));
             LUCARNE_TRY(print_against(fmt::format("{} photons", photons), picture, truth));
+        }
+        settings.set(gi::kLightPoints, gi::LightPoints::vpls);
+        for (const int64_t vpls : run.cases<int64_t>({256, 1024, 4096}))
+            for (const std::string engine : {"micro", "vpl"}) {
+                settings.set(gi::kVpls, static_cast<uint32_t>(vpls));
+                LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture(engine, settings));
+                const std::string name = fmt::format("{} VPLs, {}", vpls, engine);
+                LUCARNE_TRY(print_against(name, picture, truth));
+            }
+    }
+    return {};
+}
+
+/// Fig. 14: few gathering pixels, all of them, and paths, of closed, thin, large and glossy scenes.
+inline Result<void> figures_of_scenes(gi::Device& device, const BenchRun& run) {
+    struct Example {
+        std::string scan, scene;
+    };
+    const ImageSize size = run.size({160, 120});
+    for (const Example& example : run.cases<Example>({{"cornell", "cornell"},
+                                                      {"survey", "survey-sky"},  // trees
+                                                      {"nave", "nave"},
+                                                      {"cornell", "cornell-glossy"}})) {
+        LUCARNE_ASSIGN(const Scan scan, Scan::create(example.scan, run.points(300'000), run.folder));
+        Stage stage(device, scan);
+        LUCARNE_TRY(stage.open(
+            {.scene = scene_file(example.scene), .size = size, .preset = run.trial() ? "preview" : "high"}));
+        gi::EngineSettings settings = stage.settings();
+        settings.set(gi::kBounces, 1);
+        LUCARNE_ASSIGN(const Scan::Truth truth, stage.truth(settings, std::max<uint64_t>(run.count(256), 2)));
+        columns_against(fmt::format("fig. 14: {}, direct light and bounce 1, {}x{}", example.scene,
+                                    size.width, size.height),
+                        "gather every");
+        for (const uint32_t every : {4u, 1u}) {
+            settings.set(gi::kGatherEvery, every);
+            LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture("micro", settings));
+            LUCARNE_TRY(print_against(fmt::to_string(every), picture, truth));
+            LUCARNE_TRY(stage.write(run.folder / fmt::format("micro-{}-{}.png", example.scene, every)));
         }
     }
     return {};
@@ -196,6 +237,7 @@ inline Result<void> figures_of_micro(gi::Device& device, const BenchRun& run) {
     for (const std::string& scene : run.cases<std::string>({"cornell", "nave"}))
         LUCARNE_TRY(figures_of_one_bounce(device, run, scene));
     LUCARNE_TRY(figures_of_light_points(device, run));
+    LUCARNE_TRY(figures_of_scenes(device, run));
     return figures_of_sizes(device, run);
 }
 

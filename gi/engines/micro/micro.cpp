@@ -19,8 +19,9 @@ namespace micro {
 namespace {
 
 constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,     &kOnlyBounce.info, &kMicroBuffer.info,     &kGatherEvery.info,  &kRadiosityLevel.info,
-    &kLightPoints.info, &kPhotons.info,    &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+    &kBounces.info,         &kOnlyBounce.info,   &kMicroBuffer.info, &kGatherEvery.info,
+    &kRadiosityLevel.info,  &kLightPoints.info,  &kPhotons.info,     &kVpls.info,
+    &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "micro",
                            .label = "Final gathering",
                            .description = "final gathering of the light of all surfels, on OpenCL",

@@ -9,6 +9,7 @@
 #include "gi/engines/vpl/options.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_options.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::vpl {

@@ -11,19 +11,6 @@ inline constexpr std::array<int64_t, 6> kAtlases = {256, 512, 1024, 2048, 4096, 
 
 inline constexpr std::array<int64_t, 5> kSkyCounts = {64, 128, 256, 512, 1024};  // of 4 x 4 tiles
 
-inline constexpr Option<uint32_t> kVpls{{
-    .kind = OptionKind::integer,
-    .key = "vpls",
-    .label = "VPLs",
-    .help = "Virtual point lights",
-    .cost = "virtual point lights: time grows with them, and they share one atlas of shadow maps",
-    .least = 1,
-    .most = 65536,
-    .slider = {16, 4096, true},
-    .defaults = {int64_t{64}, int64_t{256}, int64_t{1024}},
-    .cheaper = -1,
-}};
-
 inline constexpr Option<uint32_t> kInterleave{{
     .kind = OptionKind::integer,
     .key = "interleave",

@@ -14,6 +14,7 @@
 #include "gi/engines/volume/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/gather/gather_options.h"
+#include "gi/lighting/light_options.h"
 #include "gi/shared/brdf.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -25,7 +26,7 @@ using scenes::AnalyticScene, scenes::look, scenes::material, scenes::spot;
 
 void no_settings(EngineSettings&) {}
 void fine_vpls(EngineSettings& settings) {
-    settings.set(vpl::kVpls, 1024);
+    settings.set(kVpls, 1024);
     settings.set(vpl::kInterleave, 1);
     settings.set(vpl::kAtlas, 2048);
 }
@@ -40,6 +41,11 @@ void fine_buffers(EngineSettings& settings) {
 void many_photons(EngineSettings& settings) {
     fine_buffers(settings);
     settings.set(kLightPoints, LightPoints::photons);
+}
+void many_vpls(EngineSettings& settings) {
+    fine_buffers(settings);
+    settings.set(kLightPoints, LightPoints::vpls);
+    settings.set(kVpls, 4096);
 }
 void fine_caches(EngineSettings& settings) {
     fine_buffers(settings);
@@ -76,6 +82,7 @@ constexpr Claims kClaims[] = {
     {"volume", true, true, .05, .015, .02, .05, fine_voxels},
     {"micro", true, true, .03, .015, .04, .03, fine_buffers},
     {"micro", true, true, .03, .015, .04, .03, many_photons, no_settings, "Photons"},
+    {"micro", true, true, .03, .015, .04, .03, many_vpls, no_settings, "Vpls"},
     {"environment", true, true, .03, .015, .04, .03, fine_caches},
     {"paths", true, true, .03, .005, .04, .03, many_rays, more_rays},
     {"reference", true, true, .03, .003, .03, .01, many_paths}};

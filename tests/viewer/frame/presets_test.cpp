@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -21,7 +21,7 @@ TEST(Presets, EachCostsMoreThanTheOneBefore) {
     for (size_t i = 0; i < presets().size(); ++i) {
         names.insert(presets()[i].name);
         if (i == 0) continue;
-        EXPECT_GT(presets()[i].engine[gi::vpl::kVpls], presets()[i - 1].engine[gi::vpl::kVpls]);
+        EXPECT_GT(presets()[i].engine[gi::kVpls], presets()[i - 1].engine[gi::kVpls]);
         EXPECT_GT(presets()[i].budgets.light, presets()[i - 1].budgets.light);
     }
     EXPECT_EQ(names.size(), presets().size());

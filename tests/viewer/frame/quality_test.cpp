@@ -4,6 +4,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -41,11 +42,11 @@ TEST(MovingQuality, NeverMovesDearerThanAtRest) {
     ASSERT_TRUE(quality.reduced_settings());
     for (const Preset& preset : presets()) {
         gi::EngineSettings settings = preset.engine;
-        settings.set(gi::vpl::kVpls, std::min(settings[gi::vpl::kVpls], 16u));
+        settings.set(gi::kVpls, std::min(settings[gi::kVpls], 16u));
         CutBudgets budgets = preset.budgets;
         budgets.cap(1000);
         quality.reduce(settings, budgets);
-        EXPECT_EQ(settings[gi::vpl::kVpls], 16u);
+        EXPECT_EQ(settings[gi::kVpls], 16u);
         EXPECT_EQ(budgets.view, 1000u);
         EXPECT_EQ(settings[gi::kBounces], preset.engine[gi::kBounces]) << "what is seen is the user's choice";
     }
@@ -60,7 +61,7 @@ TEST(MovingQuality, MovesWithTheLightOfThePresetInteractiveAtMost) {
         gi::EngineSettings settings = high.engine;
         CutBudgets budgets = high.budgets;
         quality.reduce(settings, budgets);
-        EXPECT_EQ(settings[gi::vpl::kVpls], interactive.engine[gi::vpl::kVpls]);
+        EXPECT_EQ(settings[gi::kVpls], interactive.engine[gi::kVpls]);
         EXPECT_EQ(settings[gi::vpl::kInterleave], interactive.engine[gi::vpl::kInterleave]);
         EXPECT_EQ(budgets.light < interactive.budgets.light, slow);
     }

@@ -25,7 +25,7 @@ View changed_view() {
     EXPECT_TRUE(view.choose_preset("high"));
     view.method.settings.set(gi::kBounces, 3);
     view.method.settings.set(gi::kOnlyBounce, 2);
-    view.method.settings.set(gi::vpl::kVpls, 64);
+    view.method.settings.set(gi::kVpls, 64);
     view.method.settings.set(gi::vpl::kInterleave, 2);
     view.method.settings.set(gi::vpl::kAtlas, 512);
     view.method.settings.set(gi::kLightResolution, 256);

@@ -1,5 +1,6 @@
 // Computes the light of the VPLs at a point, for shading and for isolated pixels.
 #include "gi/engines/vpl/bindings.h"
+#include "gi/shared/disc_form_factor.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/engines/vpl/lights.glsl"
 #include "gi/engines/vpl/shading/receiver.glsl"
@@ -31,32 +32,6 @@ bool vpl_sees(uint index, vec4 light_normal, vec3 lifted, vec3 normal) {
     float texels = 1.0 + max(dot(receiver_normal, blocker_normal), 0.0);
     return receiver.z <= 0.0 || nearest == kNothing || dot(receiver_normal, offset) <= error ||
            dot(blocker_normal, offset) <= error + texels * texel_width(blocker_distance);
-}
-
-// Returns the form factor, times pi, from a point to a disc of squared radius r2 whose centre lies at -offset: pi
-// times what a disc of unit radiosity sends to the point. In the plane of the disc's normal and the offset the light
-// vector has closed form (Howell, catalogue of radiation configuration factors, B-12 and B-13: elements parallel and
-// perpendicular to a disc), here without their cancellations far away. The part of the disc behind the receiver's
-// plane counts partly, as the mean of two rules: one cuts it off like a sphere of the same solid angle (a parabola
-// through the ends of the exact formula, off by at most 2 % of the whole), the other loses nothing (after Hill: (l^2
-// + z) / (l + 1)). The reason: a disc that crosses the plane stands for surface that ends there, and losing all of
-// that part would darken every corner (README.md).
-float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
-    float height = dot(light_normal, offset);
-    vec3 lateral = offset - height * light_normal;
-    float a2 = dot(lateral, lateral);
-    float d2 = dot(offset, offset);
-    float s = sqrt(max((d2 + r2) * (d2 + r2) - 4.0 * a2 * r2, 1e-30));
-    float parallel = d2 > r2 ? 2.0 * height * height * r2 / (s * (s + d2 - r2)) : 0.5 * (s + r2 - d2) / s;
-    float lateral_share = 2.0 * height * r2 / (s * (d2 + r2 + s));
-    vec3 flux = -parallel * light_normal - lateral_share * lateral;
-    float size = max(length(flux), 1e-30);
-    float facing = dot(flux, normal);
-    float sine = sqrt(size);
-    float cosine = facing / size;
-    float above = max(cosine + sine, 0.0);
-    float cut = cosine >= sine ? facing : size * above * above / (4.0 * sine);
-    return kPi * 0.5 * (cut + max((size * size + facing) / (size + 1.0), 0.0));
 }
 
 // What an unoccluded VPL sends to a receiver. Each VPL is a disc of its footprint A: it sends what its surface would

@@ -171,7 +171,7 @@ TEST_F(SoftLights, SealedRoomStaysBlackUnderAnyOfThemOutside) {
     AnalyticScene scene;
     scene.surfels = scenes::closed_box(1, 40, glm::vec3(.9f));
     scene.camera = scenes::look(glm::vec3(.5f), glm::vec3(.9f, .8f, .4f), .8f, 64);
-    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(kVpls, 64);
     scene.settings.set(vpl::kAtlas, 512);
     scene.settings.set(kLightSamples, 24);
     scene.lights = {scenes::rectangle_light({.5f, .5f, 1.2f}, .4f * kX, .4f, -kZ, 1000),

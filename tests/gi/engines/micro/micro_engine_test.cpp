@@ -7,6 +7,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/reference/options.h"
 #include "gi/gather/gather_options.h"
+#include "gi/lighting/light_options.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/glossy_corner.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -110,32 +111,38 @@ TEST_F(MicroEngineTest, PlacesDoNotJoinTheLightOfAWindowWithTheWallAboutIt) {
 }
 
 // In gaps of scans shares of the surface have little to do with the area that light meets.
-TEST_F(MicroEngineTest, SharesOfSurfelsDoNotChangeTheLightOfPhotons) {
-    AnalyticScene scene = room(material(1, 0, 1, 0));
-    scene.settings.set(kOnlyBounce, 3);
-    scene.settings.set(kLightPoints, LightPoints::photons);
-    scene.settings.set(kPhotons, 262'144);
-    const double even = mean_luminance(render(scene).radiance);
-    for (Surfel& s : scene.surfels)
-        if (s.position.x + s.position.y > 2) s.area *= 0.1f;
-    EXPECT_NEAR(mean_luminance(render(scene).radiance) / even, 1, 0.02);
+TEST_F(MicroEngineTest, SharesOfSurfelsDoNotChangeTheLightOfPhotonsAndVpls) {
+    for (const LightPoints points : {LightPoints::photons, LightPoints::vpls}) {
+        AnalyticScene scene = room(material(1, 0, 1, 0));
+        scene.settings.set(kOnlyBounce, 3);
+        scene.settings.set(kLightPoints, points);
+        scene.settings.set(kPhotons, 262'144);
+        const double even = mean_luminance(render(scene).radiance);
+        for (Surfel& s : scene.surfels)
+            if (s.position.x + s.position.y > 2) s.area *= 0.1f;
+        EXPECT_NEAR(mean_luminance(render(scene).radiance) / even, 1, 0.02) << static_cast<int>(points);
+    }
 }
 
 // Radiosity, which spreads specular light evenly between surfaces, makes this 1.75 and 2 times as bright as
 // it is. Sums of lobes lose less below the surface than the lobes of each photon.
-TEST_F(MicroEngineTest, PhotonsAreReflectedByLobesBetweenSurfaces) {
-    for (const float exponent : {10.0f, 100.0f}) {
-        AnalyticScene scene = scenes::glossy_corner(exponent);
-        scene.settings.set(kOnlyBounce, 2);
-        scene.settings.set(kMicroBuffer, 24);
-        scene.settings.set(kGatherEvery, 2);
-        scene.settings.set(kLightPoints, LightPoints::photons);
-        scene.settings.set(reference::kSamples, 128);
-        const double truth = mean_luminance(render(scene, "reference").radiance);
-        EXPECT_NEAR(mean_luminance(render(scene).radiance) / truth, 1, 0.17) << exponent;
-    }
+TEST_F(MicroEngineTest, LightIsReflectedByLobesBetweenSurfaces) {
+    for (const LightPoints points : {LightPoints::photons, LightPoints::vpls})
+        for (const float exponent : {10.0f, 100.0f}) {
+            AnalyticScene scene = scenes::glossy_corner(exponent);
+            scene.settings.set(kOnlyBounce, 2);
+            scene.settings.set(kMicroBuffer, 24);
+            scene.settings.set(kGatherEvery, 2);
+            scene.settings.set(kLightPoints, points);
+            scene.settings.set(kVpls, 4096);
+            scene.settings.set(reference::kSamples, 128);
+            const double truth = mean_luminance(render(scene, "reference").radiance);
+            EXPECT_NEAR(mean_luminance(render(scene).radiance) / truth, 1, 0.17)
+                << static_cast<int>(points) << ", exponent " << exponent;
+        }
 }
 
+// The surfels' light is the same on every run, and no VPL shines through a wall.
 TEST_F(MicroEngineTest, FewerGatheringPixelsGiveTheSameLight) {
     AnalyticScene scene = room(material(1, 0, 1, 0));
     const auto all = render(scene);

@@ -7,6 +7,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "tests/gi/on_device.h"
@@ -36,7 +37,7 @@ AnalyticScene box_with_a_block() {
     scene.lights = {spot(glm::vec3(1.2f, .9f, 1.9f), glm::vec3(1.1f, 1.1f, 0), .8f, .7f, 10)};
     scene.camera = look(glm::vec3(1, -2, 1), glm::vec3(1, 1, 1), .5f, 64);
     scene.settings.set(kOnlyBounce, 1);
-    scene.settings.set(vpl::kVpls, 256);
+    scene.settings.set(kVpls, 256);
     scene.settings.set(vpl::kAtlas, 2048);
     scene.settings.set(vpl::kInterleave, 2);
     scene.settings.set(reference::kSamples, 64);
@@ -71,14 +72,14 @@ TEST_F(VplEngineTest, oneBounceAgreesWithTheReference) {
     AnalyticScene scene = box_with_a_block();
     const double truth = mean(scene, "reference");
     EXPECT_NEAR(mean(scene) / truth, 1, .05);
-    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(kVpls, 1024);
     scene.settings.set(vpl::kInterleave, 1);
     EXPECT_NEAR(mean(scene) / truth, 1, .04);
 }
 
 TEST_F(VplEngineTest, furtherBouncesAgreeWithTheReference) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(kVpls, 1024);
     scene.settings.set(vpl::kInterleave, 1);
     for (const int bounce : {2, 3}) {
         scene.settings.set(kOnlyBounce, bounce);
@@ -100,7 +101,7 @@ TEST_F(VplEngineTest, bouncesTogetherAreTheSumOfBouncesApart) {
 
 TEST_F(VplEngineTest, lightsShareTheVplsAndGiveTheSumOfWhatTheyGiveAlone) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(kVpls, 1024);
     const Light strong = scene.lights[0];
     const Light weak = spot(glm::vec3(.4f, .6f, 1.9f), glm::vec3(.1f, 1.6f, .6f), .5f, .4f, 3);
     scene.lights = {weak};
@@ -114,7 +115,7 @@ TEST_F(VplEngineTest, lightsShareTheVplsAndGiveTheSumOfWhatTheyGiveAlone) {
 
 TEST_F(VplEngineTest, lightsOfEveryKindWithAShadowMapLightIndirectlyAsInTheReference) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(kVpls, 1024);
     scene.settings.set(vpl::kInterleave, 1);
     Light point{};
     point.kind = kPointLight;
@@ -135,7 +136,7 @@ TEST_F(VplEngineTest, lightsOfEveryKindWithAShadowMapLightIndirectlyAsInTheRefer
 
 TEST_F(VplEngineTest, surfelsThatShineLightTheRoomAsInTheReference) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(kVpls, 1024);
     scene.settings.set(vpl::kInterleave, 1);
     scene.lights.clear();
     scene.materials = {material(1, 0, 1, 0), material(.5f, 0, 1, 4)};
@@ -185,7 +186,7 @@ TEST_F(VplEngineTest, glossyLobesAgreeWithTheReference) {
     for (const float exponent : {10.0f, 100.0f}) {
         scene.materials = {material(.5f, .4f, exponent, 0)};
         scene.settings.set(vpl::kInterleave, 1);
-        scene.settings.set(vpl::kVpls, 1024);
+        scene.settings.set(kVpls, 1024);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .08) << exponent;
     }
 }
@@ -261,9 +262,9 @@ TEST_F(VplEngineTest, surfelsWithoutNormalsGiveAFinitePicture) {
 }
 
 TEST_F(VplEngineTest, settingsItCannotKeepAreRefused) {
-    for (const auto& spoil : {+[](EngineSettings& s) { s.set(vpl::kInterleave, 3); },
-                              +[](EngineSettings& s) { s.set(vpl::kVpls, 0); },
-                              +[](EngineSettings& s) { s.set(vpl::kAtlas, 16); }}) {
+    for (const auto& spoil :
+         {+[](EngineSettings& s) { s.set(vpl::kInterleave, 3); }, +[](EngineSettings& s) { s.set(kVpls, 0); },
+          +[](EngineSettings& s) { s.set(vpl::kAtlas, 16); }}) {
         AnalyticScene scene = box_with_a_block();
         spoil(scene.settings);
         const auto rendered = scenes::render(*device, "vpl", scene);

@@ -8,6 +8,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/glossy_corner.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -35,7 +36,7 @@ TEST_F(VplGlossyTest, theGlossyFurnaceReturnsNoMoreThanItsLobesMay) {
     AnalyticScene scene;
     scene.surfels = scenes::closed_box(2, 80, glm::vec3(.3f));
     scene.camera = look(glm::vec3(.3f, .4f, .5f), glm::vec3(1.2f, 1.3f, .9f), 1, 32);
-    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(kVpls, 1024);
     scene.settings.set(vpl::kInterleave, 1);
     for (const float exponent : {10.0f, 1000.0f}) {
         scene.materials = {material(1, .3f, exponent, 1)};
@@ -56,7 +57,7 @@ TEST_F(VplGlossyTest, theGlossyFurnaceReturnsNoMoreThanItsLobesMay) {
 TEST_F(VplGlossyTest, aSingleFrameOfFewVplsDoesNotSparkle) {
     for (const float exponent : {10.0f, 100.0f, 1000.0f}) {
         AnalyticScene scene = glossy_corner(exponent);
-        scene.settings.set(vpl::kVpls, 256);
+        scene.settings.set(kVpls, 256);
         scene.settings.set(vpl::kAtlas, 1024);
         scene.settings.set(vpl::kInterleave, 4);
         scene.settings.set(reference::kSamples, 128);
@@ -79,7 +80,7 @@ TEST_F(VplGlossyTest, aSingleFrameOfFewVplsDoesNotSparkle) {
 TEST_F(VplGlossyTest, lobesOfAllWidthsAgreeWithTheReference) {
     for (const float exponent : {10.0f, 100.0f, 1000.0f}) {
         AnalyticScene scene = glossy_corner(exponent);
-        scene.settings.set(vpl::kVpls, 1024);
+        scene.settings.set(kVpls, 1024);
         scene.settings.set(vpl::kInterleave, 1);
         scene.settings.set(reference::kSamples, 64);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .05) << exponent;

@@ -3,6 +3,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 #include "gi/registry.h"
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -23,7 +24,7 @@ class VplHeld : public OnDevice {
         LitOptions options;
         options.lights = {scenes::spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options.settings.set(kBounces, shot.bounces);
-        options.settings.set(vpl::kVpls, 64);
+        options.settings.set(kVpls, 64);
         options.settings.set(vpl::kAtlas, 512);
         return light_up(*device, engine, cloud, look(shot.eye, glm::vec3(1.2f, 1.3f, .9f), 48, 48), options)
             .radiance;

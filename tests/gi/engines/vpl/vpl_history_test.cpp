@@ -4,6 +4,7 @@
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 #include "gi/registry.h"
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -26,7 +27,7 @@ class VplHistory : public OnDevice {
         LitOptions options;
         options.lights = {scenes::spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options.settings.set(kOnlyBounce, 1);
-        options.settings.set(vpl::kVpls, 64);
+        options.settings.set(kVpls, 64);
         options.settings.set(vpl::kInterleave, 4);
         options.settings.set(vpl::kAtlas, 512);
         options.moving = shot.moving;

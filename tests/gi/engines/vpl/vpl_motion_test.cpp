@@ -7,6 +7,7 @@
 #include "gi/bounce_options.h"
 #include "gi/engines/vpl/lighting.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 #include "gi/registry.h"
 #include "gi/shared/luminance.h"
 #include "tests/gi/engines/lit_scene.h"
@@ -40,7 +41,7 @@ class VplMotion : public OnDevice {
     VplMotion() : cloud_(scenes::closed_box(2, 60, glm::vec3(.6f))) {
         options_.lights = {scenes::spot(glm::vec3(.6f, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options_.settings.set(kBounces, 1);
-        options_.settings.set(vpl::kVpls, 128);
+        options_.settings.set(kVpls, 128);
         options_.settings.set(vpl::kAtlas, 512);
         options_.settings.set(vpl::kViewVpls, false);
         options_.settings.set(vpl::kReuse, false);
@@ -79,7 +80,7 @@ TEST_F(VplMotion, StepsEndWithTheLightThatIsMadeAtOnce) {
     for (const bool view_vpls : {false, true}) {
         // With as many VPLs, steps draw as many candidates for them as all at once do.
         options_.settings.set(vpl::kViewVpls, view_vpls);
-        options_.settings.set(vpl::kVpls, view_vpls ? 4096 : 128);
+        options_.settings.set(kVpls, view_vpls ? 4096 : 128);
         options_.settings.set(vpl::kAtlas, view_vpls ? 1024 : 512);
         auto engine = *make_engine("vpl"), other = *make_engine("vpl");
         int frames = 0;

@@ -33,7 +33,7 @@ AnalyticScene room(bool open) {
         scene.surfels.push_back(s);
     }
     scene.camera = scenes::look(glm::vec3(.2f, .3f, 1.1f), glm::vec3(1.3f, 1.4f, .7f), .8f, 48);
-    scene.settings.set(vpl::kVpls, 256);
+    scene.settings.set(kVpls, 256);
     scene.settings.set(vpl::kInterleave, 1);
     scene.settings.set(vpl::kAtlas, 1024);
     scene.settings.set(kLightSamples, 16);
@@ -97,7 +97,7 @@ TEST_F(VplSoftLights, OpenFurnaceUnderAnEvenSkyIsOneEverywhere) {
 
 TEST_F(VplSoftLights, LightsWithoutSizeOrLightInsideWallsAndBlackSkiesAreDefined) {
     AnalyticScene scene = room(false);
-    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(kVpls, 64);
     scene.settings.set(vpl::kAtlas, 512);
     scene.environment = scenes::even_sky(0);
     const Light nothing[] = {
@@ -117,7 +117,7 @@ TEST_F(VplSoftLights, LightsWithoutSizeOrLightInsideWallsAndBlackSkiesAreDefined
 
 TEST_F(VplSoftLights, ManyTakeBoundedMemory) {
     AnalyticScene scene = room(false);
-    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(kVpls, 64);
     scene.settings.set(vpl::kAtlas, 512);
     scene.settings.set(kLightResolution, 512);
     const uint64_t before = device->memory_used();
@@ -132,7 +132,7 @@ TEST_F(VplSoftLights, SamePicturesEveryRunAndOthersForOtherSeeds) {
     AnalyticScene scene = room(true);
     scene.environment = scenes::even_sky(1);
     scene.lights = {scenes::rectangle_light({1, 1, 1.9f}, .3f * kX, .2f, -kZ, 5)};
-    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(kVpls, 64);
     scene.settings.set(vpl::kAtlas, 512);
     const auto first = scenes::render(*device, "vpl", scene, 3),
                again = scenes::render(*device, "vpl", scene, 3);
@@ -147,7 +147,7 @@ TEST_F(VplSoftLights, AnotherSkyIsNotLitByTheLastOnesVpls) {
     const SurfelCloud cloud(room(true).surfels);
     auto engine = *make_engine("vpl");
     LitOptions options;
-    options.settings.set(vpl::kVpls, 64);
+    options.settings.set(kVpls, 64);
     options.settings.set(vpl::kAtlas, 512);
     const CameraView camera = room(true).camera;
     for (const float radiance : {1.0f, 3.0f, 0.0f, 2.0f}) {
