@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "gi/gather/gather_options.h"
-#include "gi/gather/virtual_lights.h"
+#include "gi/gather/vpl_exchange.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/light_options.h"

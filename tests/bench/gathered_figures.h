@@ -176,14 +176,15 @@ inline Result<void> figures_of_light_points(gi::Device& device, const BenchRun& 
 /// Fig. 14: few gathering pixels, all of them, and paths, of closed, thin, large and glossy scenes.
 inline Result<void> figures_of_scenes(gi::Device& device, const BenchRun& run) {
     struct Example {
-        std::string scan, scene;
+        std::string scan, sampling, scene;
     };
     const ImageSize size = run.size({160, 120});
-    for (const Example& example : run.cases<Example>({{"cornell", "cornell"},
-                                                      {"survey", "survey-sky"},  // trees
-                                                      {"nave", "nave"},
-                                                      {"cornell", "cornell-glossy"}})) {
-        LUCARNE_ASSIGN(const Scan scan, Scan::create(example.scan, run.points(300'000), run.folder));
+    for (const Example& example : run.cases<Example>({{"cornell", "--even --normals", "cornell"},
+                                                      {"survey", "", "survey-sky"},  // trees
+                                                      {"nave", "--even --normals", "nave"},
+                                                      {"cornell", "--even --normals", "cornell-glossy"}})) {
+        LUCARNE_ASSIGN(const Scan scan,
+                       Scan::create(example.scan, run.points(300'000), run.folder, example.sampling));
         Stage stage(device, scan);
         LUCARNE_TRY(stage.open(
             {.scene = scene_file(example.scene), .size = size, .preset = run.trial() ? "preview" : "high"}));

@@ -1,9 +1,7 @@
-#include "gi/gather/virtual_lights.h"
+#include "gi/gather/vpls.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -20,19 +18,10 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr size_t kSurfelsATask = 1024, kPlacesATask = 4096;
+constexpr size_t kPlacesATask = 4096;
 /// So many places tell the flux of all light to half a per cent where discs have 7 times the area of the
 /// surface, as in scans.
 constexpr uint64_t kDrawnPlaces = 1 << 19;
-constexpr double kGoldenRatio = 0.6180339887498949;
-
-/// A disc that shines.
-struct VirtualLight {
-    glm::vec3 position, normal, origin;  ///< origin: where rays to it end, above its surfel
-    glm::vec3 even;                      ///< radiance, W/(sr m^2)
-    glm::vec3 lobe, directions;          ///< or a specular lobe (lobe.h)
-    float radius2 = 0;                   ///< m^2
-};
 
 /// Returns the radiance of a VPL toward a point at `offset` from it. A lobe is seen from all over the disc,
 /// so it is wider for near points.
@@ -91,7 +80,8 @@ std::vector<Place> lit_places(const tracing::SurfelTracer& tracer, const LightSo
     return places;
 }
 
-/// Returns `count` VPLs, evenly chosen among all places where light leaves.
+}  // namespace
+
 std::vector<VirtualLight> place_vpls(const TracedTree& traced, std::span<const SideLight> light,
                                      const SideLobes& lobes, uint64_t count, uint64_t seed) {
     const std::vector<Surfel>& surfels = traced.tracer->surfels();
@@ -117,76 +107,12 @@ std::vector<VirtualLight> place_vpls(const TracedTree& traced, std::span<const S
     return vpls;
 }
 
-/// Returns what comes to the front and the back of a surfel of every `stride`-th VPL from `first` on.
-std::array<Arrived, 2> arrived(const tracing::SurfelTracer& tracer, const Surfel& surfel,
-                               std::span<const VirtualLight> vpls, size_t first, size_t stride) {
-    std::array<Arrived, 2> sum;
-    for (size_t i = first; i < vpls.size(); i += stride) {
-        const VirtualLight& vpl = vpls[i];
-        const glm::vec3 offset = surfel.position - vpl.position;
-        const bool back = glm::dot(surfel.normal, offset) > 0;
-        const glm::vec3 normal = back ? -surfel.normal : surfel.normal;
-        // Points of one plane do not light each other.
-        const float height = std::min(-glm::dot(normal, offset), glm::dot(vpl.normal, offset));
-        if (!(height > kRimPush * surfel.radius)) continue;
-        const glm::vec3 irradiance =
-            radiance(vpl, offset) * disc_form_factor(normal, vpl.normal, offset, vpl.radius2);
-        if (!(mean_colour(irradiance) > 0)) continue;
-        const glm::vec3 origin = tracing::offset_origin(surfel.position, normal, surfel.radius);
-        if (tracer.occluded(origin, vpl.origin)) continue;
-        Arrived& side = sum[back ? 1 : 0];
-        side.irradiance += irradiance;
-        side.directions += mean_colour(irradiance) * glm::reflect(glm::normalize(offset), normal);
-    }
-    for (Arrived& side : sum) {
-        side.irradiance *= static_cast<float>(stride);
-        side.directions *= static_cast<float>(stride);
-    }
-    return sum;
-}
-
-void add(const std::vector<SideLight>& more, std::vector<SideLight>& sum) {
-    for (size_t i = 0; i < sum.size(); ++i) {
-        sum[i].front += more[i].front;
-        sum[i].back += more[i].back;
-    }
-}
-
-}  // namespace
-
-void add_light_of_vpls(const TracedTree& traced, std::span<const Material> materials,
-                       const ExchangeSettings& settings, std::vector<SideLight>& light, SideLobes& lobes,
-                       const std::atomic<bool>* stop) {
-    const std::vector<Surfel>& surfels = traced.tracer->surfels();
-    std::vector<SideLight> from = light;
-    SideLobes from_lobes = lobes;
-    if (settings.only_last) clear(light, lobes);
-    for (uint32_t bounce = 1; bounce <= settings.bounces; ++bounce) {
-        const std::vector<VirtualLight> vpls =
-            place_vpls(traced, from, from_lobes, settings.sources, mix64(settings.seed, bounce));
-        clear(from, from_lobes);
-        const size_t stride = std::max<size_t>(vpls.size() / kVplsOfASurfel, 1);
-        parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
-            if (stop && *stop) return;
-            for (size_t i = first; i < last; ++i) {
-                // Neighbours in the tree take different ones.
-                const double turn = static_cast<double>(i) * kGoldenRatio;
-                const auto start =
-                    static_cast<size_t>((turn - std::floor(turn)) * static_cast<double>(stride));
-                const std::array<Arrived, 2> sides =
-                    arrived(*traced.tracer, surfels[i], vpls, std::min(start, stride - 1), stride);
-                const Reflectance r =
-                    make_reflectance(materials[surfels[i].material % materials.size()], surfels[i].albedo);
-                for (const bool back : {false, true})
-                    reflect(r, sides[back ? 1 : 0], traced.surfel_of[i], back, from, from_lobes);
-            }
-        });
-        if (stop && *stop) return;
-        if (settings.only_last && bounce < settings.bounces) continue;
-        add(from, light);
-        add(from_lobes.light, lobes.light);
-        add(from_lobes.directions, lobes.directions);
-    }
+glm::vec3 irradiance_by(const VirtualLight& vpl, const glm::vec3& position, const glm::vec3& normal,
+                        float radius) {
+    const glm::vec3 offset = position - vpl.position;
+    const float height = std::min(-glm::dot(normal, offset), glm::dot(vpl.normal, offset));
+    if (!(height > kRimPush * radius)) return glm::vec3(0.0f);
+    return radiance(vpl, offset) * disc_form_factor(normal, vpl.normal, offset, vpl.radius2);
 }
 
 }  // namespace lucarne::gi
