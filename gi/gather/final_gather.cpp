@@ -11,13 +11,16 @@
 #include "gi/gl_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/shared/brdf.h"
+#include "gi/shared/lobe.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace {
 
-constexpr size_t kPixelsATask = 4096;
+constexpr size_t kPixelsATask = 4096, kPointsATask = 256;
+/// Pixels that tell what is bright for a picture.
+constexpr size_t kPilots = 128;
 /// Micro-buffers of specular lobes end where the lobe has fallen to this share of its peak; the rest is a
 /// thousandth of its light.
 constexpr float kLobeEnd = 1e-3f;
@@ -38,10 +41,16 @@ class LobeGather {
     /// Sets the mean that the lobe of each surface gathers (GatherPoint). A surface without a radius gathers
     /// nothing.
     Result<void> run(Lobe lobe, std::span<const SurfacePoint> surfaces,
-                     std::span<const Reflectance> reflectances, std::vector<glm::vec4>& light) {
+                     std::span<const Reflectance> reflectances, const FindBright& find_bright,
+                     std::vector<glm::vec4>& light) {
         lobe_ = lobe;
         surfaces_ = surfaces;
         reflectances_ = reflectances;
+        bright_ = nullptr;
+        gatherer_.set_no_bright();
+        if (find_bright) {
+            LUCARNE_ASSIGN(bright_, timed(frame_, "bright light", [&] { return bright_for(find_bright); }));
+        }
         const uint32_t step = frame_.settings[kGatherEvery];
         // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
         const uint32_t place =
@@ -86,6 +95,26 @@ class LobeGather {
         }
         return point;
     }
+    /// Finds what is bright for the picture, of which a few pixels gather first.
+    Result<const BrightLight*> bright_for(const FindBright& find) {
+        std::vector<uint32_t> shown;
+        for (uint32_t i = 0; i < surfaces_.size(); ++i)
+            if (surfaces_[i].radius > 0) shown.push_back(i);
+        if (shown.empty()) return nullptr;
+        std::vector<GatherPoint> pilots;
+        Random random(seed_, kPilots);
+        for (uint64_t i = 0; i < kPilots; ++i) {
+            const double share = (static_cast<double>(i) + random.uniform()) / kPilots;
+            pilots.push_back(point_of(shown[static_cast<size_t>(share * static_cast<double>(shown.size()))]));
+        }
+        std::vector<glm::vec4> found(pilots.size());
+        LUCARNE_TRY(gatherer_.gather(device_, what_, pilots, frame_.settings[kMicroBuffer], seed_, found));
+        float typical = 0;
+        for (const glm::vec4& light : found) typical += mean_colour(glm::vec3(light)) / kPilots;
+        if (!(typical > 0)) return nullptr;
+        return find(pilots, typical, seed_);
+    }
+
     /// Gathers at those of these pixels that have a surface; results in their order.
     Result<void> gather_at(std::span<const uint32_t> pixels, std::vector<glm::vec4>& results, bool again) {
         std::vector<GatherPoint> points;
@@ -102,10 +131,18 @@ class LobeGather {
         };
         LUCARNE_TRY(gatherer_.gather(device_, what_, points, frame_.settings[kMicroBuffer], seed_, found,
                                      frame_.stop, done));
+        if (bright_) add_bright(points, found);
         results.assign(pixels.size(), glm::vec4(0.0f));
         for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
         counts_.points += points.size();
         return {};
+    }
+
+    void add_bright(std::span<const GatherPoint> points, std::span<glm::vec4> light) const {
+        parallel_ranges(points.size(), kPointsATask, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last && !frame_.stopped(); ++i)
+                light[i] += glm::vec4(bright_->at(points[i], points[i].seed), 0);
+        });
     }
 
     /// Reports this share of the lobe's picture as finished: of all pixels, one part for each lobe.
@@ -126,6 +163,7 @@ class LobeGather {
     uint64_t seed_;
     size_t reported_ = 0;  ///< pixels
     Lobe lobe_ = Lobe::diffuse;
+    const BrightLight* bright_ = nullptr;  ///< what the gatherer leaves out
     std::span<const SurfacePoint> surfaces_;
     std::span<const Reflectance> reflectances_;
 };
@@ -133,11 +171,12 @@ class LobeGather {
 }  // namespace
 
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             Gathered what, GatherCounts& counts) {
+                                             Gathered what, const FindBright& find_bright,
+                                             GatherCounts& counts) {
     auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     std::vector<glm::vec4> light;
     LobeGather gather(frame, device, gatherer, what, counts);
-    LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, {}, light));
+    LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, {}, find_bright, light));
     if (frame.stopped()) return light;
     LUCARNE_TRY(reflect(frame, device, gatherer, what, std::move(surfaces), light, counts));
     return light;
@@ -160,7 +199,7 @@ Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathere
         if (!(reflectances[i].ks > 0)) surfaces[i].radius = 0;
     std::vector<glm::vec4> lobe;
     LobeGather gather(frame, device, gatherer, what, counts);
-    LUCARNE_TRY(gather.run(Lobe::specular, surfaces, reflectances, lobe));
+    LUCARNE_TRY(gather.run(Lobe::specular, surfaces, reflectances, {}, lobe));
     if (frame.stopped()) return {};
     for (size_t i = 0; i < light.size(); ++i) {
         const Reflectance& r = reflectances[i];

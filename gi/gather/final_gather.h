@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <vector>
 
 #include <glm/vec4.hpp>
 
+#include "gi/gather/bright_light.h"
 #include "gi/gather/gatherer.h"
 #include "gi/host_frame.h"
 
@@ -14,12 +17,18 @@ struct GatherCounts {
     size_t again = 0;   ///< of these, for pixels between which nothing could be interpolated
 };
 
+/// Finds the light that is bright for some points (the first argument) that receive a mean radiance of the
+/// second, W/(sr m^2), and tells the gatherer to leave it out. The third is a seed. Returns none if there is
+/// none.
+using FindBright = std::function<Result<const BrightLight*>(std::span<const GatherPoint>, float, uint64_t)>;
+
 /// Returns what each pixel of the frame reflects of `what`, the light that `gatherer` holds, W/(sr m^2),
 /// row 0 on top. Diffuse and specular lobes gather by micro-buffers of their own. Pixels between those that
 /// gather (kGatherEvery) are interpolated. Leaves out the rest if the frame is stopped. Errors: the device
 /// failed.
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             Gathered what, GatherCounts& counts);
+                                             Gathered what, const FindBright& find_bright,
+                                             GatherCounts& counts);
 
 /// Turns the mean radiance that each pixel receives (`light`) into what it reflects, W/(sr m^2). Specular
 /// lobes gather by micro-buffers of their own, as above. Errors likewise.

@@ -146,14 +146,21 @@ float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction
     return vload3(y * sky.width + x, texels);
 }
 
+// Returns what of a side's light buffers see at a distance: VPLs bring the rest (BrightLight). `bright`: of each side
+// what is too bright, of which they bring the share of far points.
+float3 without_bright(float3 radiance, global const float* bright, float reach2, uint side, float distance) {
+    float distance2 = distance * distance;
+    return radiance - vload3(side, bright) * (distance2 / (distance2 + reach2));
+}
+
 // For each point: the mean radiance of its rays, W/(sr m^2) (times pi: irradiance), and the share of rays that meet
 // nothing. `light`: six floats a slot, the radiance of its front and of its back; lit = 0: `nodes` only block.
 // `lobe_light` and `lobe_directions`, likewise: what it sends out by specular lobes, if glossy is not 0. `sky` shines
-// where there is nothing; without texels it is dark.
+// where there is nothing; without texels it is dark. What is `bright` is left out unless reach2 is negative.
 kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
-                   global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky,
-                   global const GatherPoint* points, global const float* rays, uint sets, uint count,
-                   global float4* results) {
+                   global const float* lobe_directions, uint glossy, global const float* bright, float reach2,
+                   global const float* sky_texels, SkyPicture sky, global const GatherPoint* points,
+                   global const float* rays, uint sets, uint count, global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
     GatherPoint point = points[number];
@@ -182,7 +189,9 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
                 ++empty;
                 if (sky.width > 0) sum += weight * sky_radiance(sky_texels, sky, direction);
             } else if (lit) {
-                sum += weight * vload3(side, light);
+                float3 radiance = vload3(side, light);
+                if (reach2 >= 0.0f) radiance = without_bright(radiance, bright, reach2, side, depths[pixel]);
+                sum += weight * radiance;
                 if (glossy) sum += weight * specular(lobe_light, lobe_directions, side, -direction);
             }
         }

@@ -65,6 +65,14 @@ Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> sl
     return light_.upload(0, bytes);
 }
 
+Result<void> Gatherer::set_bright(ClDevice& device, std::span<const SideLight> slots, float reach2) {
+    const auto bytes = std::as_bytes(slots);
+    LUCARNE_TRY(device.reserve(bright_, bytes.size(), "bright light of the tree"));
+    LUCARNE_TRY(bright_.upload(0, bytes));
+    reach2_ = reach2;
+    return {};
+}
+
 Result<void> Gatherer::set_lobes(ClDevice& device, const SideLobes& lobes) {
     glossy_ = false;
     if (lobes.light.empty()) return {};
@@ -126,6 +134,7 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
         LUCARNE_TRY(points_.upload(0, std::as_bytes(points.subspan(first, count))));
         LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit,
                                 glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,
+                                reach2_ >= 0 ? bright_ : nodes_, reach2_,
                                 sky.width > 0 ? sky_texels_ : nodes_, sky, points_, rays_, kSets,
                                 static_cast<uint32_t>(count), results_));
         LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));

@@ -52,6 +52,10 @@ class Gatherer {
     /// Sends specular light to the device, which the slots send out beside that of set_light() until it is
     /// replaced. Errors: device memory.
     Result<void> set_lobes(ClDevice& device, const SideLobes& lobes);
+    /// Leaves light out of what gather() finds, until set_no_bright() (BrightLight): of each slot that much,
+    /// W/(sr m^2), as far as it is far beyond the root of `reach2`, m^2. Errors: device memory.
+    Result<void> set_bright(ClDevice& device, std::span<const SideLight> slots, float reach2);
+    void set_no_bright() { reach2_ = kNoReach; }
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.
     Result<void> set_sky(ClDevice& device, const GatherSky& sky);
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
@@ -80,9 +84,12 @@ class Gatherer {
     Asked asked(Gathered what) const;
     Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);
 
-    ClBuffer nodes_, light_, lobe_light_, lobe_directions_, sky_texels_, points_, results_, rays_;
+    static constexpr float kNoReach = -1;
+
+    ClBuffer nodes_, light_, bright_, lobe_light_, lobe_directions_, sky_texels_, points_, results_, rays_;
     SkyPicture sky_{};
     bool empty_ = true, glossy_ = false;
+    float reach2_ = kNoReach;
     uint32_t grid_ = 0;
     uint64_t seed_ = 0;
     uint64_t tree_ = 0;  ///< number of the tree

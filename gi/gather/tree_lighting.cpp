@@ -75,9 +75,7 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
     }
     if (frame.stopped() || !by_rays) return {};
     const TimedPass pass(frame, by_vpls ? "VPLs" : "photons");
-    if (!traced_) {
-        LUCARNE_ASSIGN(traced_, TracedTree::create(lit_));
-    }
+    LUCARNE_TRY(trace_tree());
     const std::vector<Material> materials = device_materials(frame.materials);
     SideLobes lobes = lit_.lobes_of_surfels();
     if (by_vpls) {
@@ -114,6 +112,21 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
     LUCARNE_TRY(set_slots(slots_, lobes_));
     replaced_ = false;
     light_of_ = std::move(basis);
+    return {};
+}
+
+Result<const BrightLight*> TreeLighting::find_bright(std::span<const GatherPoint> pilots, float typical,
+                                                     uint64_t seed) {
+    LUCARNE_TRY(trace_tree());
+    bright_light_ = BrightLight::find(lit_, *traced_, slots_, pilots, typical, seed);
+    if (bright_light_.empty()) return nullptr;
+    LUCARNE_TRY(gatherer_.set_bright(*opencl_, bright_light_.excess(), bright_light_.reach2()));
+    return &bright_light_;
+}
+
+Result<void> TreeLighting::trace_tree() {
+    if (traced_) return {};
+    LUCARNE_ASSIGN(traced_, TracedTree::create(lit_));
     return {};
 }
 

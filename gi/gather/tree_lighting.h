@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gi/changes.h"
+#include "gi/gather/bright_light.h"
 #include "gi/gather/gather_options.h"
 #include "gi/gather/gatherer.h"
 #include "gi/gather/lit_tree.h"
@@ -36,6 +37,9 @@ class TreeLighting {
     /// may differ from frame to frame), and gives it to the gatherer. Errors: a device failed.
     Result<void> make_light(Frame& frame, const Radiosity::Settings& settings,
                             LightPoints points = LightPoints::radiosity);
+    /// Finds the light that is bright for some points (BrightLight::find()) and has the gatherer leave it
+    /// out. make_light() has to come first. Returns none if there is none. Errors: Embree's, a device failed.
+    Result<const BrightLight*> find_bright(std::span<const GatherPoint> pilots, float typical, uint64_t seed);
     /// Gives the gatherer other light: the surfels' own (if `own`), and what slots reflect of this
     /// irradiance, W/m^2, by side (twice the slot, and one more for the back). make_light() has to come
     /// first. Errors: a device failed.
@@ -64,6 +68,8 @@ class TreeLighting {
     /// Sets the light that surfels send out evenly, and `lobes_`. Errors: a device failed.
     Result<void> exchange(Frame& frame, Radiosity::Settings settings, LightPoints points,
                           std::vector<SideLight>& light);
+    /// Makes traced_. Errors: Embree's.
+    Result<void> trace_tree();
     /// Gives the gatherer this light.
     Result<void> set_slots(std::span<const SideLight> slots, const SideLobes& lobes);
 
@@ -81,8 +87,9 @@ class TreeLighting {
     LightCutRevisions cuts_;
     std::optional<uint64_t> sky_of_;    ///< revision of the environment that the sky is made from
     std::optional<TracedTree> traced_;  ///< of the tree, once something asks for it
-    std::optional<Photons> photons_;    ///< likewise
-    std::optional<uint64_t> tree_of_;   ///< revision of the light cut that the tree is made from
+    BrightLight bright_light_;
+    std::optional<Photons> photons_;   ///< likewise
+    std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()
     SideLobes lobes_;               ///< by slot, that belong to it

@@ -191,4 +191,17 @@ glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, floa
     return position + normal * std::max(kOriginOffset * radius, 1e-6f * largest);
 }
 
+glm::vec3 before_what_hides(const SurfelTracer& surfels, const glm::vec3& origin, const glm::vec3& viewer,
+                            float radius) {
+    const auto hit = surfels.nearest(origin, viewer);
+    if (!hit) return origin;
+    const Surfel& surfel = surfels.surfels()[*hit];
+    const float side = glm::dot(surfel.normal, viewer);
+    if (side == 0) return origin;
+    const float distance = glm::dot(surfel.normal, surfel.position - origin) / side;
+    if (distance > 2 * std::max(radius, surfel.radius)) return origin;  // another object in front of it
+    return offset_origin(origin + viewer * distance, side > 0 ? surfel.normal : -surfel.normal,
+                         surfel.radius);
+}
+
 }  // namespace lucarne::gi::tracing

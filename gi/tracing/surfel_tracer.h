@@ -72,4 +72,11 @@ class SurfelTracer {
 /// coordinates. `normal` points to the side where the ray leaves.
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float radius);
 
+/// Returns the origin of rays from a point that a picture shows. `origin`: offset_origin() of the point;
+/// `radius`: its surfel's. The G-buffer may show the rim of a disc that lies a little behind another surface
+/// (kRimPush). Such rays have to start on the viewer's side of that surface; otherwise the rims of a sealed
+/// room would be lit from outside.
+glm::vec3 before_what_hides(const SurfelTracer& surfels, const glm::vec3& origin, const glm::vec3& viewer,
+                            float radius);
+
 }  // namespace lucarne::gi::tracing

@@ -67,8 +67,14 @@ Result<void> MicroEngine::gather(Frame& frame) {
     const Gathered what = !wants_indirect(s)                       ? Gathered::sky
                           : wants_direct(s) && lighting_.has_sky() ? Gathered::both
                                                                    : Gathered::light_of_surfels;
-    LUCARNE_ASSIGN(const std::vector<glm::vec4> light,
-                   gather_pixels(frame, lighting_.opencl(), lighting_.gatherer(), what, counts_));
+    FindBright find_bright;
+    if (wants_indirect(s))
+        find_bright = [this](std::span<const GatherPoint> pilots, float typical, uint64_t seed) {
+            return lighting_.find_bright(pilots, typical, seed);
+        };
+    LUCARNE_ASSIGN(
+        const std::vector<glm::vec4> light,
+        gather_pixels(frame, lighting_.opencl(), lighting_.gatherer(), what, find_bright, counts_));
     if (!frame.stopped()) upload_radiance(frame, light);
     return {};
 }

@@ -220,21 +220,6 @@ glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
     return sum;
 }
 
-/// Returns the origin for rays of a start. The G-buffer may show the rim of a disc that lies a little behind
-/// another surface (kRimPush). Such rays have to start on the viewer's side of that surface; otherwise the
-/// rims of a sealed room would be lit from outside.
-glm::vec3 PathTracer::before_what_hides(const glm::vec3& origin, const Start& start) const {
-    const auto hit = surfels_.nearest(origin, start.viewer);
-    if (!hit) return origin;
-    const Surfel& surfel = surfels_.surfels()[*hit];
-    const float side = glm::dot(surfel.normal, start.viewer);
-    if (side == 0) return origin;
-    const float distance = glm::dot(surfel.normal, surfel.position - origin) / side;
-    if (distance > 2 * std::max(start.radius, surfel.radius)) return origin;  // another object in front of it
-    return offset_origin(origin + start.viewer * distance, side > 0 ? surfel.normal : -surfel.normal,
-                         surfel.radius);
-}
-
 PathSums PathTracer::trace(const Start& start, uint64_t index, const std::atomic<bool>* stop) const {
     PathSums sums;
     const uint64_t samples = std::max(settings_.samples, 1u);
@@ -246,7 +231,7 @@ PathSums PathTracer::trace(const Start& start, uint64_t index, const std::atomic
         return sums;
     }
     Vertex first = vertex(start);
-    first.origin = before_what_hides(first.origin, start);
+    first.origin = before_what_hides(surfels_, first.origin, start.viewer, start.radius);
     // Emission and sharp light are not sampled: once is enough.
     if (counts(0)) sums.exact = glm::dvec3(first.emission + sharp_light(first));
     if (!anything_random()) return sums;

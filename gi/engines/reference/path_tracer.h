@@ -65,7 +65,6 @@ class PathTracer {
     Vertex vertex(const Start& start) const;
     bool counts(uint32_t bounce) const;
     bool anything_random() const;
-    glm::vec3 before_what_hides(const glm::vec3& origin, const Start& start) const;
     glm::vec3 sharp_light(const Vertex& vertex) const;
     glm::vec3 soft_light(const Vertex& vertex, Random& random) const;
     glm::vec3 soft_light_along(const Vertex& vertex, const Ray& ray) const;
