@@ -72,7 +72,9 @@ AnalyticScene window_reveal() {
                               static_cast<int>(std::lround(glm::length(u) * kSurfelsAMetre)), glm::vec3(0.5f),
                               material);
     };
-    constexpr float kDepth = 0.1f, kSide = 0.7f, kLow = 0.65f, kHigh = kLow + kSide;
+    // Discs have a seventh of the depth as radius. Less depth is nothing to compare with: rays start a radius
+    // above the surface.
+    constexpr float kDepth = 0.2f, kSide = 0.8f, kLow = 0.6f, kHigh = kLow + kSide;
     AnalyticScene scene;
     add(scene, kO, 2.0f * kZ, 2.0f * kX, 0);
     std::erase_if(scene.surfels, [](const Surfel& s) {
@@ -91,7 +93,8 @@ AnalyticScene window_reveal() {
     return scene;
 }
 
-// A place that held a part of the wall and of the pane had the light of either: twice as much as there is.
+// A place that held a part of the wall and of the pane had the light of either: in single frames a third more
+// than there is.
 TEST_F(MicroEngineTest, PlacesDoNotJoinTheLightOfAWindowWithTheWallAboutIt) {
     AnalyticScene scene = window_reveal();
     scene.settings.set(kOnlyBounce, 2);
@@ -103,11 +106,13 @@ TEST_F(MicroEngineTest, PlacesDoNotJoinTheLightOfAWindowWithTheWallAboutIt) {
     EXPECT_NEAR(mean_luminance(render(scene).radiance) / truth, 1, 0.05);
     // Few places for a window find its light by chance, but their mean is right.
     constexpr uint64_t kFrames = 8;
-    scene.settings.set(kRadiosityLevel, 8);
-    double mean = 0;
-    for (uint64_t index = 0; index < kFrames; ++index)
-        mean += mean_luminance(render(scene, "micro", index).radiance) / kFrames;
-    EXPECT_NEAR(mean / truth, 1, 0.1);
+    for (const uint32_t level : {6u, 8u}) {
+        scene.settings.set(kRadiosityLevel, level);
+        double mean = 0;
+        for (uint64_t index = 0; index < kFrames; ++index)
+            mean += mean_luminance(render(scene, "micro", index).radiance) / kFrames;
+        EXPECT_NEAR(mean / truth, 1, 0.1) << level;
+    }
 }
 
 // In gaps of scans shares of the surface have little to do with the area that light meets.
