@@ -23,6 +23,8 @@ constexpr float kFit = 1.25f;        ///< a cell fits into a ray that is this mu
 constexpr float kSheet = 2, kCurved = 0.5f, kMostTurn = 0.5f;
 /// Cells with more surfaces than this are not joined: foliage, for example.
 constexpr size_t kMostParts = 256;
+/// Parts of a sheet at most: one that is noisier than its discs are wide hides its own sides.
+constexpr size_t kMostDivided = 4;
 /// Fewer leaves than this that see each other see nothing else: the inside of walls, and foliage. They are
 /// not joined.
 constexpr uint32_t kFewestOfAir = 16;
@@ -42,8 +44,10 @@ uint32_t Groups::fitting(uint32_t leaf, float width) const {
     return group;
 }
 
-GroupBuilder::GroupBuilder(std::span<const Surfel> surfels, std::span<const RayHit> hits, float least_cell)
-    : surfels_(surfels), leaf_of_(2 * surfels.size(), kNone) {
+GroupBuilder::GroupBuilder(const tracing::SurfelTracer& tracer, std::span<const RayHit> hits,
+                           float least_cell)
+    : tracer_(tracer), surfels_(tracer.surfels()), leaf_of_(2 * tracer.surfels().size(), kNone) {
+    const std::span surfels = surfels_;
     glm::vec3 low(3e38f), high(-3e38f);
     for (const Surfel& s : surfels) {
         low = glm::min(low, s.position);
@@ -111,6 +115,9 @@ void GroupBuilder::add(Facts& sum, const Facts& more) {
     sum.weight = weight;
     sum.area += more.area;
     sum.radius = std::max(sum.radius, more.radius);
+    if (sum.middle.radius == 0 ||
+        glm::distance(more.middle.position, sum.centre) < glm::distance(sum.middle.position, sum.centre))
+        sum.middle = more.middle;
 }
 
 void GroupBuilder::add_leaf(std::span<const Side> sides, uint32_t facing) {
@@ -119,8 +126,8 @@ void GroupBuilder::add_leaf(std::span<const Side> sides, uint32_t facing) {
     for (const Side side : sides) {
         const Surfel& s = surfels_[side / 2];
         const float weight = std::max(s.area, kLeastWeight);
-        add(facts,
-            {weight * normal_of(surfels_, side), s.position, weight, std::max(s.area, 0.0f), s.radius});
+        add(facts, {weight * normal_of(surfels_, side), s.position, weight, std::max(s.area, 0.0f), s.radius,
+                    start_at(surfels_, side)});
         leaf_of_[side] = number;
     }
     facts_.push_back(facts);
@@ -160,9 +167,32 @@ void GroupBuilder::make_leaves(Cell& cell) {
             const auto sheet = std::ranges::upper_bound(gaps, height) - gaps.begin();
             sheets[static_cast<size_t>(sheet)].push_back(side);
         }
-        for (const auto& sheet : sheets) add_leaf(sheet, f);
+        for (const auto& sheet : sheets)
+            for (const auto& part : divided_by_walls(sheet)) add_leaf(part, f);
     }
     cell.last_leaf = leaves();
+}
+
+/// Divides a sheet where something stands on it: a wall on a floor has other light in front of it than
+/// behind.
+std::vector<std::vector<Side>> GroupBuilder::divided_by_walls(std::span<const Side> sheet) const {
+    std::vector<std::vector<Side>> parts;
+    for (const Side side : sheet) {
+        // The last one of a part is usually the nearest.
+        auto own = std::ranges::find_if(parts, [&](const std::vector<Side>& part) {
+            return see_each_other(side, part.back()) || see_each_other(side, part.front());
+        });
+        if (own == parts.end() && parts.size() == kMostDivided) --own;
+        if (own == parts.end()) own = parts.emplace(own);
+        own->push_back(side);
+    }
+    return parts;
+}
+
+bool GroupBuilder::see_each_other(Side one, Side other) const {
+    const RayStart from = start_at(surfels_, one), to = start_at(surfels_, other);
+    return !tracer_.occluded(tracing::offset_origin(from.position, from.normal, from.radius),
+                             tracing::offset_origin(to.position, to.normal, to.radius));
 }
 
 void GroupBuilder::connect(uint32_t leaf, uint32_t other) {
@@ -179,16 +209,24 @@ std::vector<uint32_t> GroupBuilder::find_airs() const {
     return airs;
 }
 
-/// Whether two groups are parts of one surface. Arcs of a curved one lie symmetrically about their mean
-/// normal, so their centres are in one plane across it, unless their sizes differ; parallel sheets are not.
-bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) {
+/// Whether two groups are parts of one surface, and nothing stands on it between them. Arcs of a curved one
+/// lie symmetrically about their mean normal, so their centres are in one plane across it, unless their sizes
+/// differ; parallel sheets are not.
+bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) const {
     if (one.facing != other.facing || one.air != other.air || one.air == kNone) return false;
     const glm::vec3 first = glm::normalize(one.normal), second = glm::normalize(other.normal);
     const glm::vec3 mean = glm::normalize(first + second), apart = one.centre - other.centre;
     const float across = std::abs(glm::dot(mean, apart));
     const float along = glm::length(apart - mean * glm::dot(mean, apart));
     const float turn = std::min(glm::length(first - second), kMostTurn);
-    return across <= kSheet * std::max(one.radius, other.radius) + kCurved * turn * along;
+    if (across > kSheet * std::max(one.radius, other.radius) + kCurved * turn * along) return false;
+    // Over the back of a curved surface: an arc's height is an eighth of its chord times its turn.
+    const auto origin = [](const RayStart& s) {
+        return tracing::offset_origin(s.position, s.normal, s.radius);
+    };
+    const glm::vec3 from = origin(one.middle), to = origin(other.middle);
+    const glm::vec3 over = (from + to) / 2.0f + mean * (turn * along / 4);
+    return !tracer_.occluded(from, over) && !tracer_.occluded(over, to);
 }
 
 Groups GroupBuilder::join() const {

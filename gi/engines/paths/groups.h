@@ -8,14 +8,15 @@
 
 #include "gi/engines/paths/cosine_rays.h"
 #include "gi/engines/paths/sides.h"
+#include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi::paths {
 
 /// The hierarchical volumetric data structure of Yue et al. 2007, section 5.3: sides of surfels, grouped by
 /// the cells of an adaptive octree. A group is what one cell holds of one surface: sides that face the same
 /// of six directions, lie in one plane (sheets that are farther apart than their discs are wide are
-/// separate), and see the same air. So light never passes from one side of a wall to the other, and sealed
-/// rooms stay black. Groups of larger cells join those of smaller ones.
+/// separate), see each other and see the same air. So light never passes from one side of a wall to the
+/// other, and sealed rooms stay black. Groups of larger cells join those of smaller ones.
 struct Groups {
     uint32_t leaves = 0;               ///< the first groups are those of the finest cells
     std::vector<uint32_t> leaf_of;     ///< of each side
@@ -41,8 +42,8 @@ struct Groups {
 class GroupBuilder {
  public:
     /// Divides cells until they fit into the narrowest ray that ends in them, or are about `least_cell`, m.
-    /// `surfels` must outlive it.
-    GroupBuilder(std::span<const Surfel> surfels, std::span<const RayHit> hits, float least_cell);
+    /// `tracer` must outlive it.
+    GroupBuilder(const tracing::SurfelTracer& tracer, std::span<const RayHit> hits, float least_cell);
 
     uint32_t leaves() const { return static_cast<uint32_t>(facts_.size()); }
     std::span<const uint32_t> leaf_of() const { return leaf_of_; }
@@ -63,6 +64,7 @@ class GroupBuilder {
         float weight = 0;        ///< sum of areas, m^2, never 0
         float area = 0;          ///< m^2
         float radius = 0;        ///< m, the largest
+        RayStart middle;         ///< the side nearest to the centre
         uint32_t facing = 0;
         uint32_t air = 0;
     };
@@ -76,9 +78,12 @@ class GroupBuilder {
     void make_leaves(Cell& cell);
     void add_leaf(std::span<const Side> sides, uint32_t facing);
     std::vector<uint32_t> find_airs() const;
-    static bool on_one_surface(const Facts& one, const Facts& other);
+    std::vector<std::vector<Side>> divided_by_walls(std::span<const Side> sheet) const;
+    bool see_each_other(Side one, Side other) const;
+    bool on_one_surface(const Facts& one, const Facts& other) const;
     static void add(Facts& sum, const Facts& more);
 
+    const tracing::SurfelTracer& tracer_;
     std::span<const Surfel> surfels_;
     float edge_ = 0;                         ///< of the octree, m
     std::vector<uint32_t> order_;            ///< surfels along a curve through space

@@ -21,7 +21,7 @@ PathBuilder::PathBuilder(const tracing::SurfelTracer& tracer, const PathPlan& pl
     : tracer_(tracer), plan_(plan), chooser_(tracer, plan.spacing, plan.rays, plan.seed) {}
 
 void PathBuilder::make_groups() {
-    groups_.emplace(tracer_.surfels(), chooser_.state().hits, kLeastCell * chooser_.state().spacing.least);
+    groups_.emplace(tracer_, chooser_.state().hits, kLeastCell * chooser_.state().spacing.least);
 }
 
 void PathBuilder::join_groups() {

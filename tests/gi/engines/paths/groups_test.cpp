@@ -1,6 +1,7 @@
 #include "gi/engines/paths/groups.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "tests/gi/engines/paths/paths_scenes.h"
@@ -14,7 +15,8 @@ template <class Connected>
 Groups groups_of(const std::vector<Surfel>& surfels, float width, const Connected& connected) {
     std::vector<RayHit> hits;
     for (Side side = 0; side < 2 * surfels.size(); ++side) hits.push_back({side, width});
-    GroupBuilder builder(surfels, hits, 0);
+    const auto tracer = tracer_of(surfels);
+    GroupBuilder builder(*tracer, hits, 0);
     for (uint32_t a = 0; a < builder.leaves(); ++a)
         for (uint32_t b = a + 1; b < builder.leaves(); ++b)
             if (connected(builder.sides_of(a).front(), builder.sides_of(b).front())) builder.connect(a, b);
@@ -59,12 +61,13 @@ TEST(Groups, HoldEverySideOnceAndTheirAreasAddUp) {
 TEST(Groups, CellsFitIntoTheNarrowestRay) {
     const auto surfels = scenes::closed_box(1, 64, glm::vec3(.5f));
     std::vector<RayHit> hits = {{0, .05f}, {2 * 64 * 64, .3f}};
-    GroupBuilder builder(surfels, hits, 0);
+    const auto tracer = tracer_of(surfels);
+    GroupBuilder builder(*tracer, hits, 0);
     const Groups groups = builder.join();
     EXPECT_LE(groups.cell[groups.leaf_of[0]], .0625f);
     const uint32_t far_from_it = groups.leaf_of[2 * (2 * 64 * 64 - 1)];
     EXPECT_GT(groups.cell[far_from_it], .2f);
-    GroupBuilder bounded(surfels, hits, .4f);
+    GroupBuilder bounded(*tracer, hits, .4f);
     EXPECT_LT(bounded.leaves(), builder.leaves());
 }
 
@@ -117,9 +120,42 @@ TEST(Groups, OfDifferentAirAreNotJoined) {
     EXPECT_EQ(inside.size(), 6u) << "each face is one group";
 }
 
+TEST(Groups, EndAtAWallThatStandsOnTheirSurface) {
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, {-1, 0, 0}, 2.0f * kX, 2.0f * kY, 60, glm::vec3(.5f));
+    const auto floor = static_cast<Side>(surfels.size());
+    // Where no cell ends.
+    scenes::add_rectangle(surfels, {.04f, -.5f, -.5f}, 3.0f * kY, 3.0f * kZ, 90, glm::vec3(.5f));
+    const Groups groups = groups_of(surfels, .3f, all_see_each_other);
+    std::set<uint32_t> before, behind;
+    for (Side i = 0; i < floor; ++i)
+        (surfels[i].position.x < .04f ? before : behind).insert(largest_of(groups, 2 * i));
+    EXPECT_EQ(before.size(), 1u);
+    EXPECT_EQ(behind.size(), 1u);
+    EXPECT_NE(before, behind);
+}
+
+TEST(Groups, ReachOverTheBackOfACurvedSurface) {
+    std::vector<Surfel> surfels;
+    for (int x = 0; x < 120; ++x)
+        for (int y = 0; y < 120; ++y) {
+            const float angle = .5f * (static_cast<float>(x) / 119 - .5f);
+            surfels.push_back({{4 * std::sin(angle), static_cast<float>(y) / 60, 4 * std::cos(angle)},
+                               {std::sin(angle), 0, std::cos(angle)},
+                               glm::vec3(.5f),
+                               .02f,
+                               2.0f / 7200,
+                               0});
+        }
+    const Groups groups = groups_of(surfels, .2f, all_see_each_other);
+    std::set<uint32_t> tops;
+    for (Side i = 0; i < surfels.size(); ++i) tops.insert(largest_of(groups, 2 * i));
+    EXPECT_EQ(tops.size(), 1u);
+}
+
 TEST(Groups, OfNothingAreNone) {
-    const std::vector<Surfel> none;
-    const Groups groups = GroupBuilder(none, {}, 0).join();
+    const auto none = tracer_of({});
+    const Groups groups = GroupBuilder(*none, {}, 0).join();
     EXPECT_EQ(groups.count(), 0u);
 }
 
