@@ -25,6 +25,7 @@ constexpr float kSheet = 2, kCurved = 0.5f, kMostTurn = 0.5f;
 constexpr size_t kMostParts = 256;
 /// Parts of a sheet at most: one that is noisier than its discs are wide hides its own sides.
 constexpr size_t kMostDivided = 4;
+constexpr float kFarther = 0.01f;  ///< of a ray over a curved surface
 /// Fewer leaves than this that see each other see nothing else: the inside of walls, and foliage. They are
 /// not joined.
 constexpr uint32_t kFewestOfAir = 16;
@@ -226,7 +227,9 @@ bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) const {
     };
     const glm::vec3 from = origin(one.middle), to = origin(other.middle);
     const glm::vec3 over = (from + to) / 2.0f + mean * (turn * along / 4);
-    return !tracer_.occluded(from, over) && !tracer_.occluded(over, to);
+    // Both rays go a little farther, or a wall in the middle would end both.
+    return !tracer_.occluded(from, over + kFarther * (over - from)) &&
+           !tracer_.occluded(to, over + kFarther * (over - to));
 }
 
 Groups GroupBuilder::join() const {

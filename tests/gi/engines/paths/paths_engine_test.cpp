@@ -200,5 +200,31 @@ TEST_F(PathsEngine, TheSkyLightsAnOpenBoxAsItsLinksSay) {
     EXPECT_EQ(draw().radiance, by_links.radiance) << "it does not differ from frame to frame";
 }
 
+TEST_F(PathsEngine, LittleSkyLeaksIntoASealedRoomWithDiscsThroughItsWalls) {
+    // Floor and ceiling go on outside under the sky, so discs of both stick out through the walls. Without
+    // walls about gathering points 20 % of the light outside were seen inside, with them 6 %; the reference
+    // sees none.
+    std::vector<Surfel> surfels;
+    const glm::vec3 x(1.96f, 0, 0), y(0, 1.96f, 0), z(0, 0, 1.96f), at(1.02f, 1.02f, 0);
+    scenes::add_rectangle(surfels, kO, 4.0f * kX, 4.0f * kY, 80, glm::vec3(.6f));
+    scenes::add_rectangle(surfels, glm::vec3(.6f, .6f, 1.96f), 2.8f * kY, 2.8f * kX, 56, glm::vec3(.6f));
+    scenes::add_rectangle(surfels, at, y, z, 40, glm::vec3(.6f));
+    scenes::add_rectangle(surfels, at + x, z, y, 40, glm::vec3(.6f));
+    scenes::add_rectangle(surfels, at, z, x, 40, glm::vec3(.6f));
+    scenes::add_rectangle(surfels, at + y, x, z, 40, glm::vec3(.6f));
+    cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
+    options_.bake = nullptr;
+    // By links: light views would let light in beside the walls, where discs are nearer than their biases.
+    options_.lights.clear();
+    options_.environment = scenes::even_sky(100);
+    options_.settings.set(kOnlyBounce, 1);
+    camera_ = look({.4f, 2, 3}, {1.2f, 2, 0}, 48, 48);
+    const double outside = mean_luminance(draw().radiance);
+    camera_ = look({1.4f, 1.5f, .9f}, {2.2f, 2.3f, .4f}, 48, 48);
+    const double inside = mean_luminance(draw().radiance);
+    EXPECT_GT(outside, .5);
+    EXPECT_LT(inside, .1 * outside) << inside << " of " << outside;
+}
+
 }  // namespace
 }  // namespace lucarne::gi
