@@ -42,14 +42,7 @@ glm::vec3 passing_of(const Voxels& voxels, uint32_t voxel) {
     for (int axis = 0; axis < 3; ++axis)
         shares[axis] = static_cast<float>(std::popcount(free_columns(own, axis))) / 64;
     if (shares == glm::vec3(0.0f)) return shares;
-    uint64_t blocks[27];
-    const glm::ivec3 cell = voxels.grid().cell(voxels.occupied()[voxel]);
-    for (int i = 0; i < 27; ++i) {
-        const glm::ivec3 other = cell + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
-        const uint32_t number = voxels.at(other);
-        blocks[i] = number != Voxels::kAir ? voxels.blocks(number) : voxels.is_air(other) ? 0 : kAllBlocks;
-    }
-    return connects_all(blocks) ? shares : glm::vec3(0.0f);
+    return connects_all(voxels.blocks_about(voxel)) ? shares : glm::vec3(0.0f);
 }
 
 }  // namespace

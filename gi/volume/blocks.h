@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include <glm/vec3.hpp>
@@ -18,9 +19,19 @@ inline uint64_t block_bit(const glm::ivec3& block) {
 }
 
 /// Returns the blocks that a part of a disc touches. `part`: in units of voxels, in the voxel at `cell`.
-/// `radius`: of the disc, in voxels: gaps between discs are about as large, so blocks are joined, or are the
-/// voxel as a whole, until they are large enough to close them.
-uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell, float radius);
+uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell);
+
+/// Returns how many blocks wide gaps between discs may be: 1 (none), or up to kWidestGap, or more if voxels
+/// are too small to tell gaps from openings. `radius`, `area`: of each disc and of its share of the surface,
+/// in voxels.
+int gap_between(float radius, float area);
+inline constexpr int kWidestGap = kBlocksAlong + 1;
+
+/// Returns the blocks of the middle one of 3 x 3 x 3 voxels, and those that are free only in gaps: that no
+/// free cube of `gap` blocks along each side, at most kWidestGap, holds. Where such cubes on two sides of a
+/// gap touch, but none passes it, the blocks between them are not free, either. `blocks`: of the voxels, x
+/// fastest.
+uint64_t without_gaps(const std::array<uint64_t, 27>& blocks, int gap);
 
 /// Returns the blocks on those columns along an axis that are free from side to side.
 uint64_t free_columns(uint64_t blocks, int axis);
@@ -28,6 +39,6 @@ uint64_t free_columns(uint64_t blocks, int axis);
 /// Returns whether what is free in the middle one of 3 x 3 x 3 voxels, from side to side, is connected with
 /// all that is free from side to side in the others: then no wall is between them. `blocks`: of the voxels, x
 /// fastest.
-bool connects_all(const uint64_t (&blocks)[27]);
+bool connects_all(const std::array<uint64_t, 27>& blocks);
 
 }  // namespace lucarne::gi::volume

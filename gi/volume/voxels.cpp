@@ -24,6 +24,7 @@ constexpr size_t kSurfelsAPiece = 16384, kSurfelsAtOnce = 8 * kSurfelsAPiece;
 constexpr size_t kSomeParts = size_t{1} << 22, kPartsASurfel = 8;
 /// Of a disc, in voxels: those of a broken file would touch every voxel of the grid, one after the other.
 constexpr float kLargestRadius = 1024;
+constexpr size_t kGapsATask = 256;
 
 }  // namespace
 
@@ -72,13 +73,17 @@ void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) const
         return;
     const glm::vec3 normal = decode_octahedral(surfel.normal);
     const size_t first = target.size();
+    const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
+    const int gap = gap_between(radius / grid_.voxel, whole / (grid_.voxel * grid_.voxel));
     float sum = 0;
     for_each_voxel(grid_, middle, normal, radius, [&](const glm::ivec3& cell, const Polygon& part) {
         const float area = part.area();
         sum += area;
-        target.push_back({grid_.number(cell), {number, area}, blocks_of(part, cell, radius / grid_.voxel)});
+        target.push_back({grid_.number(cell),
+                          {number, area},
+                          static_cast<uint8_t>(gap),
+                          gap > kWidestGap ? kAllBlocks : blocks_of(part, cell)});
     });
-    const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
     if (grid_.part && !inside) sum = std::max(sum, octagon_about(grid_, middle, normal, radius).area());
     for (size_t i = first; i < target.size(); ++i)
         target[i].part.area =
@@ -125,16 +130,42 @@ Voxels VoxelMaker::finish() {
     }
     voxels.parts_.resize(voxels.starts_.back());
     voxels.blocks_.resize(voxels.occupied_.size());
+    std::vector<uint8_t> gaps(voxels.occupied_.size(), 0);
     std::vector<size_t> next(voxels.starts_.begin(), voxels.starts_.end() - 1);
     for (auto& piece : pieces_) {
         for (const CellPart& part : piece) {
             const uint32_t voxel = voxels.numbers_[part.cell];
             voxels.parts_[next[voxel]++] = part.part;
             voxels.blocks_[voxel] |= part.blocks;
+            gaps[voxel] = std::max(gaps[voxel], part.gap);
         }
         piece = {};
     }
+    voxels.close_gaps(gaps);
     return voxels;
+}
+
+/// Adds blocks that lie in gaps between discs. `gaps`: by occupied voxel, of its largest disc.
+void Voxels::close_gaps(std::span<const uint8_t> gaps) {
+    std::vector<uint64_t> closed(blocks_.size());
+    parallel_ranges(closed.size(), kGapsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            closed[i] = blocks_[i] == kAllBlocks
+                            ? kAllBlocks
+                            : without_gaps(blocks_about(static_cast<uint32_t>(i)), gaps[i]);
+    });
+    blocks_ = std::move(closed);
+}
+
+std::array<uint64_t, 27> Voxels::blocks_about(uint32_t voxel) const {
+    std::array<uint64_t, 27> found;
+    const glm::ivec3 cell = grid_.cell(occupied_[voxel]);
+    for (int i = 0; i < 27; ++i) {
+        const glm::ivec3 other = cell + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+        const uint32_t number = at(other);
+        found[static_cast<size_t>(i)] = number != kAir ? blocks_[number] : is_air(other) ? 0 : kAllBlocks;
+    }
+    return found;
 }
 
 Result<Voxels> Voxels::divide(std::span<const FlatSurfel> surfels, const Grid& grid) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -46,11 +47,15 @@ class Voxels {
         return std::span(parts_).subspan(starts_[voxel], starts_[voxel + 1] - starts_[voxel]);
     }
     size_t all_parts() const { return parts_.size(); }
-    /// The blocks of an occupied voxel that discs touch (blocks.h).
+    /// The blocks of an occupied voxel that discs touch, and those in gaps between discs (blocks.h).
     uint64_t blocks(uint32_t voxel) const { return blocks_[voxel]; }
+    /// Those of the 3 x 3 x 3 voxels about an occupied one, x fastest: none of air, and all where nothing is
+    /// known.
+    std::array<uint64_t, 27> blocks_about(uint32_t voxel) const;
 
  private:
     friend class VoxelMaker;
+    void close_gaps(std::span<const uint8_t> gaps);
     Grid grid_;
     std::vector<uint32_t> numbers_;   ///< by cell
     std::vector<uint32_t> occupied_;  ///< cells
@@ -74,6 +79,7 @@ class VoxelMaker {
     struct CellPart {
         uint32_t cell;
         SurfelPart part;
+        uint8_t gap;
         uint64_t blocks;
     };
     void add_parts(uint32_t surfel, std::vector<CellPart>& target) const;

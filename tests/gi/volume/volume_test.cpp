@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -7,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "gi/shared/brdf.h"
 #include "gi/volume/air.h"
 #include "gi/volume/blocks.h"
 #include "gi/volume/disc_areas.h"
@@ -159,22 +161,67 @@ TEST(Voxels, WallsOfAnyDirectionStopDiagonalSteps) {
     }
 }
 
-TEST(Blocks, ThatADiscTouchesAreSetAndJoinedIfDiscsAreLarge) {
+TEST(Blocks, ThatADiscTouchesAreSet) {
     Polygon square;  // in the plane z = 2.3, over a quarter of the voxel
     for (const glm::vec2& corner : {glm::vec2(0), glm::vec2(.45f, 0), glm::vec2(.45f), glm::vec2(0, .45f)})
         square.add(glm::vec3(1, 1, 2.3f) + glm::vec3(corner, 0));
-    const uint64_t small = blocks_of(square, {1, 1, 2}, .05f);
+    const uint64_t small = blocks_of(square, {1, 1, 2});
     EXPECT_EQ(small, 0x33u << 16) << "2 x 2 blocks of the second layer";
-    const uint64_t large = blocks_of(square, {1, 1, 2}, .15f);
-    EXPECT_EQ(large, uint64_t{0x33} << 16 | 0x33u) << "joined with those of the first";
-    EXPECT_EQ(blocks_of(square, {1, 1, 2}, .3f), kAllBlocks);
     EXPECT_EQ(std::popcount(free_columns(small, 2)), 4 * (16 - 4));
     EXPECT_EQ(std::popcount(free_columns(small, 0)), 4 * (16 - 2));
     EXPECT_EQ(free_columns(kAllBlocks, 1), 0u);
 }
 
+TEST(Blocks, GapsBetweenDiscsAreAsWideAsTheirCoverageTells) {
+    // Radius of a fifth of a block.
+    constexpr float kRadius = .05f;
+    const auto gap = [](float radius, float coverage) {
+        return gap_between(radius, kPi * radius * radius / coverage);
+    };
+    EXPECT_EQ(gap(kRadius, 20), 1) << "none";
+    EXPECT_EQ(gap(kRadius, 5), 1) << "1.3 radii: within a block";
+    EXPECT_EQ(gap(4 * kRadius, 5), 2);
+    EXPECT_EQ(gap(4 * kRadius, 1.7f), 3);
+    EXPECT_GT(gap(8 * kRadius, 1.7f), kWidestGap);
+}
+
+/// Blocks of 3 x 3 x 3 voxels of which those are taken for which taken(block) is true.
+template <class Taken>
+std::array<uint64_t, 27> blocks_where(const Taken& taken) {
+    std::array<uint64_t, 27> blocks{};
+    for (int i = 0; i < 12 * 12 * 12; ++i) {
+        const glm::ivec3 block(i % 12, i / 12 % 12, i / 144), voxel = block / kBlocksAlong;
+        if (taken(block))
+            blocks[static_cast<size_t>(voxel.x + 3 * voxel.y + 9 * voxel.z)] |=
+                block_bit(block - kBlocksAlong * voxel);
+    }
+    return blocks;
+}
+
+TEST(Blocks, WithoutGapsNarrowHolesOfAWallAreClosedAndWideOnesStayAsTheyAre) {
+    for (const int hole : {1, 2, 3, 4}) {
+        const auto wall = blocks_where([&](const glm::ivec3& b) {
+            return b.z == 5 && (b.x < 4 || b.x >= 4 + hole || b.y < 4 || b.y >= 4 + hole);
+        });
+        const auto closed = blocks_where([](const glm::ivec3& b) { return b.z == 5; });
+        for (int gap = 1; gap <= kWidestGap; ++gap)
+            EXPECT_EQ(without_gaps(wall, gap), gap > hole ? closed[13] : wall[13]) << hole << ' ' << gap;
+    }
+}
+
+TEST(Blocks, WithoutGapsAWallWithAStepInAGapIsClosed) {
+    // Its left half is one block lower: from below a cube reaches into the gap up to the right half's height,
+    // and from above down to the left one's.
+    const auto wall =
+        blocks_where([](const glm::ivec3& b) { return b.x < 5 ? b.z == 5 : b.x > 6 && b.z == 6; });
+    const uint64_t closed = without_gaps(wall, 3);
+    for (int z = 0; z < kBlocksAlong; ++z)
+        for (int x = 0; x < kBlocksAlong; ++x)
+            EXPECT_EQ((closed & block_bit({x, 0, z})) != 0, z == 1 || z == 2) << x << ' ' << z;
+}
+
 TEST(Blocks, AWallSeparatesWhatIsFreeUnlessItHasAnOpening) {
-    uint64_t blocks[27] = {};
+    std::array<uint64_t, 27> blocks{};
     EXPECT_TRUE(connects_all(blocks));
     for (int i = 9; i < 18; ++i) blocks[i] = 0xffffu << 16;  // a wall across the middle layer of voxels
     EXPECT_FALSE(connects_all(blocks));
