@@ -58,18 +58,22 @@ inline Grid grid_about(const glm::vec3& low, const glm::vec3& high, uint32_t lon
 }
 
 /// Returns a grid of voxels half as large about a place, for half of the longest side of `coarse` along each
-/// axis, or for all of an axis that is shorter. It lies in `coarse` as a whole, and near its border if the
-/// place is there or beyond.
+/// axis, or for all of an axis that is shorter. It lies in `coarse` as a whole, and ends with it where it
+/// would end near to that.
 inline Grid finer_grid(const Grid& coarse, const glm::vec3& position) {
     Grid grid{.voxel = coarse.voxel / 2, .part = true};
     const int extent = (std::max({coarse.size.x, coarse.size.y, coarse.size.z}) + 1) / 2;
-    const glm::vec3 most(coarse.size);
-    const glm::vec3 place = glm::clamp(coarse.place(position), glm::vec3(0.0f), most);
+    const glm::vec3 place = glm::clamp(coarse.place(position), glm::vec3(0.0f), glm::vec3(coarse.size));
     glm::ivec3 low(0);
     for (int axis = 0; axis < 3; ++axis) {
-        const int cells = std::min(extent, coarse.size[axis]);
-        low[axis] =
-            std::clamp(static_cast<int>(std::lround(place[axis])) - cells / 2, 0, coarse.size[axis] - cells);
+        const int cells = std::min(extent, coarse.size[axis]), most = coarse.size[axis] - cells;
+        low[axis] = std::clamp(static_cast<int>(std::lround(place[axis])) - cells / 2, 0, most);
+        // Outer walls and what is before them are in it as a whole, or not at all: light that enters between
+        // voxels of a wall is not known.
+        if (low[axis] < extent / 8)
+            low[axis] = 0;
+        else if (low[axis] > most - extent / 8)
+            low[axis] = most;
         grid.size[axis] = std::max(2 * cells - 1, 0);
     }
     // Half a voxel within whole coarse ones: what lies in the middle of those, as outermost walls do, then

@@ -21,6 +21,8 @@ namespace {
 
 /// Voxels of transport sh: their lobes take 128 bytes each.
 constexpr size_t kMostLobes = size_t{1} << 19;
+/// The sky shines through small windows, so it is carried along so many times as many directions as a bounce.
+constexpr uint32_t kSkyDirections = 4;
 /// Texels of the sky that one direction stands for.
 constexpr int kSkySamples = 32;
 
@@ -209,12 +211,12 @@ Result<StepResult> LightMaker::light_faces(Work& work) {
     return StepResult::done;
 }
 
-Directions LightMaker::directions(uint32_t bounce) const {
-    return even_directions(sweep_count_, mix64(mix64(seed_, basis_.frame), bounce));
+Directions LightMaker::directions(uint32_t bounce, uint32_t count) const {
+    return even_directions(count, mix64(mix64(seed_, basis_.frame), bounce));
 }
 
 /// Begins to carry the sources of all levels, or only what comes from outside.
-void LightMaker::begin_sweep(uint32_t bounce, const Sweeper::Outside& outside, bool dark) {
+void LightMaker::begin_sweep(Directions directions, const Sweeper::Outside& outside, bool dark) {
     if (!sweeper_) {
         std::vector<const Space*> spaces;
         for (const Level& level : levels_) spaces.push_back(level.space.get());
@@ -226,7 +228,7 @@ void LightMaker::begin_sweep(uint32_t bounce, const Sweeper::Outside& outside, b
         if (dark) none[i].assign(levels_[i].sources.size(), glm::vec3(0.0f));
         radiance.emplace_back(dark ? none[i] : levels_[i].sources);
     }
-    sweeper_->begin(directions(bounce), radiance, outside);
+    sweeper_->begin(std::move(directions), radiance, outside);
 }
 
 /// Adds the first reflection of the sky to the sources; pixels show it as direct light.
@@ -234,10 +236,12 @@ Result<StepResult> LightMaker::sweep_sky(Work& work) {
     const GatherSky& sky = work.inputs.sky;
     if (sky.texels.empty()) return StepResult::skipped;
     const TimedPass pass(work.frame, "sky");
-    if (!sweeping_)
+    if (!sweeping_) {
+        const uint32_t count = kSkyDirections * sweep_count_;
         begin_sweep(
-            0, [&sky, count = sweep_count_](const glm::vec3& way) { return sky_about(sky, way, count); },
+            directions(0, count), [&sky, count](const glm::vec3& way) { return sky_about(sky, way, count); },
             true);
+    }
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
     for (size_t i = 0; i < levels_.size(); ++i) {
@@ -282,7 +286,7 @@ Result<StepResult> LightMaker::sweep_bounce(Work& work, uint32_t bounce) {
     const TimedPass pass(work.frame, "sweep");
     if (!sweeping_)
         begin_sweep(
-            bounce, [](const glm::vec3&) { return glm::vec3(0.0f); }, false);
+            directions(bounce, sweep_count_), [](const glm::vec3&) { return glm::vec3(0.0f); }, false);
     sweeping_ = sweeper_->advance();
     if (sweeping_) return StepResult::again;
     for (size_t i = 0; i < levels_.size(); ++i)

@@ -97,13 +97,13 @@ class LightMaker {
     Result<StepResult> find_faces(Work& work, size_t level);
     Result<StepResult> light_surfels(Work& work);
     Result<StepResult> light_faces(Work& work);
-    void begin_sweep(uint32_t bounce, const Sweeper::Outside& outside, bool dark);
+    void begin_sweep(Directions directions, const Sweeper::Outside& outside, bool dark);
     Result<StepResult> sweep_sky(Work& work);
     Result<StepResult> gather_first(Work& work, size_t level);
     Result<StepResult> sweep_bounce(Work& work, uint32_t bounce);
     Result<StepResult> propagate_bounce(Work& work, uint32_t bounce);
     void add_bounce(Level& level, uint32_t bounce, std::span<const glm::vec3> irradiance) const;
-    Directions directions(uint32_t bounce) const;
+    Directions directions(uint32_t bounce, uint32_t count) const;
 
     StepRunner<Work> runner_;
     Basis basis_;

@@ -47,7 +47,8 @@ inline constexpr Option<uint32_t> kSweepDirections{{
     .kind = OptionKind::integer,
     .key = "sweep_directions",
     .label = "sweep directions",
-    .help = "Directions in which light of the sky, and of all bounces after the first, crosses the volume",
+    .help = "Directions in which light of bounces after the first crosses the volume; the sky's light has "
+            "four times as many",
     .cost = "directions in which light crosses the volume: time grows with them,\n"
             "and small bright surfaces light their surroundings more evenly",
     .least = 32,

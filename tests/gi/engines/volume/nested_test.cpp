@@ -82,6 +82,17 @@ TEST(FinerGrid, LiesInTheCoarseOneWhereverItsMiddleIs) {
     EXPECT_NEAR(fine.position(.5f * glm::vec3(fine.size)).x, 4, coarse.voxel);
 }
 
+TEST(FinerGrid, EndsWithTheCoarseOneIfItNearlyDoes) {
+    const Grid coarse = grid_about(glm::vec3(0), glm::vec3(8), 64);
+    for (const float off : {2.0f, 2.1f, 2.3f}) {
+        const glm::vec3 low = coarse.place(finer_grid(coarse, glm::vec3(off)).low);
+        const Grid upper = finer_grid(coarse, glm::vec3(8 - off));
+        EXPECT_NEAR(low.x, .25f, 1e-3f) << off;
+        EXPECT_NEAR(coarse.place(upper.position(glm::vec3(upper.size))).x, coarse.size.x, .3f) << off;
+    }
+    EXPECT_GT(coarse.place(finer_grid(coarse, glm::vec3(3)).low).x, 4);
+}
+
 TEST(FinerGrid, HoldsTheAreaThatIsInIt) {
     // Large discs cross its border: a plate of 1 m^2, of which it holds what lies in its box.
     const auto surfels = flat::square(12, 1);
