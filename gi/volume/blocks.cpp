@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -20,66 +22,100 @@ constexpr float kTouchingBlocks = 1.25f * kBlocksAlong * kTouching;
 
 constexpr int kAlong = 3 * kBlocksAlong;
 constexpr int kMiddle = 13;  ///< of the voxels
-/// Blocks of 3 x 3 x 3 voxels: a row along x is a number of 12 bits.
-using Rows = std::array<uint16_t, size_t{kAlong} * kAlong>;
+/// Blocks of 3 x 3 x 3 voxels: three words for each layer along z, of four rows along x each. A row is the
+/// lower 12 of 16 bits.
+using Rows = std::array<uint64_t, 3 * kAlong>;
+constexpr uint64_t kRowBits = 0x0fff0fff0fff0fff;
 
 /// Sets the bits of a mask's voxel in rows.
 void put(Rows& rows, uint64_t mask, int voxel) {
-    const int x = voxel % 3 * kBlocksAlong, y = voxel / 3 % 3 * kBlocksAlong, z = voxel / 9 * kBlocksAlong;
-    for (int i = 0; i < kBlocksAlong * kBlocksAlong; ++i) {
-        const auto row = static_cast<uint16_t>((mask >> (kBlocksAlong * i) & 15u) << x);
-        const int at = (z + i / kBlocksAlong) * kAlong + y + i % kBlocksAlong;
-        rows[static_cast<size_t>(at)] = static_cast<uint16_t>(rows[static_cast<size_t>(at)] | row);
+    const int x = voxel % 3 * kBlocksAlong, y = voxel / 3 % 3, z = voxel / 9 * kBlocksAlong;
+    for (int k = 0; k < kBlocksAlong; ++k) {
+        const uint64_t layer = mask >> (16 * k);
+        const uint64_t spread =
+            (layer & 0xf) | (layer & 0xf0) << 12 | (layer & 0xf00) << 24 | (layer & 0xf000) << 36;
+        rows[static_cast<size_t>((z + k) * 3 + y)] |= spread << x;
     }
 }
 
-/// Returns the blocks of a row that touch others, also by an edge or a corner, and those of them in it.
-uint32_t touched_in_row(const Rows& others, int y, int z) {
-    uint32_t about = 0;
+/// Returns the mask of the middle voxel.
+uint64_t middle_of(const Rows& rows) {
+    uint64_t mask = 0;
+    for (int k = 0; k < kBlocksAlong; ++k) {
+        const uint64_t own = rows[static_cast<size_t>((kBlocksAlong + k) * 3 + 1)] >> kBlocksAlong;
+        const uint64_t layer = (own & 0xf) | (own >> 12 & 0xf0) | (own >> 24 & 0xf00) | (own >> 36 & 0xf000);
+        mask |= layer << (16 * k);
+    }
+    return mask;
+}
+
+/// Returns the rows that lie `k` rows (-4 to 4, not 0) along y from those of a word, in a layer of three.
+uint64_t along_y(const uint64_t* layer, int word, int k) {
+    const int next = k > 0 ? word + 1 : word - 1, bits = 16 * std::abs(k);
+    const uint64_t beyond = next >= 0 && next < 3 ? layer[next] : 0;
+    if (bits == 64) return beyond;
+    return k > 0 ? layer[word] >> bits | beyond << (64 - bits) : layer[word] << bits | beyond >> (64 - bits);
+}
+
+/// Sets `touched` to the blocks of a layer along z that touch others, also by an edge or a corner, and to
+/// those of them in it.
+void touched_in_layer(const Rows& others, int z, uint64_t (&touched)[3]) {
+    uint64_t about[3] = {};
     for (int k = std::max(z - 1, 0); k <= std::min(z + 1, kAlong - 1); ++k)
-        for (int j = std::max(y - 1, 0); j <= std::min(y + 1, kAlong - 1); ++j)
-            about |= others[static_cast<size_t>(k * kAlong + j)];
-    return about | about << 1 | about >> 1;
+        for (int i = 0; i < 3; ++i) about[i] |= others[static_cast<size_t>(3 * k + i)];
+    for (int i = 0; i < 3; ++i) {
+        const uint64_t rows = about[i] | along_y(about, i, 1) | along_y(about, i, -1);
+        touched[i] = (rows | rows << 1 | rows >> 1) & kRowBits;
+    }
 }
 
 /// Adds the free blocks that touch reached ones to these. Returns whether there were any.
 bool grow(Rows& reached, const Rows& free) {
     bool grown = false;
-    for (int z = 0; z < kAlong; ++z)
-        for (int y = 0; y < kAlong; ++y) {
-            const auto at = static_cast<size_t>(z * kAlong + y);
-            uint32_t row = reached[at] | (touched_in_row(reached, y, z) & free[at]);
-            // Along the row at once.
-            for (uint32_t before = 0; before != row;) {
-                before = row;
-                row |= (row << 1 | row >> 1) & free[at];
+    const auto grow_layer = [&](int z) {
+        uint64_t touched[3];
+        touched_in_layer(reached, z, touched);
+        for (int i = 0; i < 3; ++i) {
+            const auto at = static_cast<size_t>(3 * z + i);
+            uint64_t rows = reached[at] | (touched[i] & free[at]);
+            // Along the rows at once.
+            for (uint64_t before = 0; before != rows;) {
+                before = rows;
+                rows |= (rows << 1 | rows >> 1) & free[at];
             }
-            grown = grown || row != reached[at];
-            reached[at] = static_cast<uint16_t>(row);
+            grown = grown || rows != reached[at];
+            reached[at] = rows;
         }
+    };
+    for (int z = 0; z < kAlong; ++z) grow_layer(z);
+    for (int z = kAlong - 1; z-- > 0;) grow_layer(z);
     return grown;
 }
 
 /// Joins each row with those up to `count` - 1 rows after it (`step` 1) or before it (-1): along y, then z.
 template <class Join>
 void join_rows(Rows& rows, int count, int step, const Join& join) {
-    for (const int stride : {1, kAlong})
-        for (int n = 0; n < kAlong * kAlong; ++n) {
-            const int at = step > 0 ? n : kAlong * kAlong - 1 - n, place = at / stride % kAlong;
-            uint16_t& row = rows[static_cast<size_t>(at)];
-            for (int k = 1; k < count; ++k) {
-                const bool inside = place + k * step >= 0 && place + k * step < kAlong;
-                row = join(row, inside ? rows[static_cast<size_t>(at + k * step * stride)] : uint16_t{0});
-            }
+    const Rows before = rows;
+    for (int at = 0; at < 3 * kAlong; ++at)
+        for (int k = 1; k < count; ++k)
+            join(rows[static_cast<size_t>(at)],
+                 along_y(before.data() + static_cast<ptrdiff_t>(at / 3) * 3, at % 3, k * step));
+    for (int n = 0; n < 3 * kAlong; ++n) {
+        const int at = step > 0 ? n : 3 * kAlong - 1 - n;
+        for (int k = 1; k < count; ++k) {
+            const int other = at + 3 * k * step;
+            const bool inside = other >= 0 && other < 3 * kAlong;
+            join(rows[static_cast<size_t>(at)], inside ? rows[static_cast<size_t>(other)] : 0);
         }
+    }
 }
 
 /// Returns the free cubes of `side` blocks along each axis, by their lowest blocks.
 Rows free_cubes(const Rows& free, int side) {
     Rows cubes = free;
     for (int k = 1; k < side; ++k)
-        for (size_t i = 0; i < free.size(); ++i) cubes[i] &= static_cast<uint16_t>(free[i] >> k);
-    join_rows(cubes, side, 1, [](uint16_t a, uint16_t b) { return static_cast<uint16_t>(a & b); });
+        for (size_t i = 0; i < free.size(); ++i) cubes[i] &= free[i] >> k;
+    join_rows(cubes, side, 1, [](uint64_t& a, uint64_t b) { a &= b; });
     return cubes;
 }
 
@@ -87,20 +123,9 @@ Rows free_cubes(const Rows& free, int side) {
 Rows all_of_cubes(const Rows& cubes, int side) {
     Rows all = cubes;
     for (int k = 1; k < side; ++k)
-        for (size_t i = 0; i < all.size(); ++i) all[i] |= static_cast<uint16_t>(cubes[i] << k);
-    join_rows(all, side, -1, [](uint16_t a, uint16_t b) { return static_cast<uint16_t>(a | b); });
+        for (size_t i = 0; i < all.size(); ++i) all[i] |= cubes[i] << k;
+    join_rows(all, side, -1, [](uint64_t& a, uint64_t b) { a |= b; });
     return all;
-}
-
-/// Returns the mask of the middle voxel, of rows that row(y, z) returns.
-template <class Row>
-uint64_t middle_of(const Row& row) {
-    uint64_t mask = 0;
-    for (int i = 0; i < kBlocksAlong * kBlocksAlong; ++i) {
-        const uint32_t own = row(kBlocksAlong + i % kBlocksAlong, kBlocksAlong + i / kBlocksAlong);
-        mask |= uint64_t{own >> kBlocksAlong & 15u} << (kBlocksAlong * i);
-    }
-    return mask;
 }
 
 }  // namespace
@@ -131,23 +156,26 @@ uint64_t without_gaps(const std::array<uint64_t, 27>& blocks, int gap) {
     // Parts of what is free, of cubes that a cube reaches from one to the other.
     std::vector<Rows> parts;
     for (Rows cubes = free_cubes(free, gap);;) {
-        const auto first = std::ranges::find_if(cubes, [](uint16_t row) { return row != 0; });
+        const auto first = std::ranges::find_if(cubes, [](uint64_t rows) { return rows != 0; });
         if (first == cubes.end()) break;
         Rows part{};
-        part[static_cast<size_t>(first - cubes.begin())] = static_cast<uint16_t>(*first & -*first);
+        part[static_cast<size_t>(first - cubes.begin())] = *first & (~*first + 1);  // one of them
         while (grow(part, cubes)) {
         }
-        for (size_t i = 0; i < cubes.size(); ++i) cubes[i] &= static_cast<uint16_t>(~part[i]);
+        for (size_t i = 0; i < cubes.size(); ++i) cubes[i] &= ~part[i];
         parts.push_back(all_of_cubes(part, gap));
     }
     uint64_t kept = 0;
     for (const Rows& part : parts) {
-        Rows others{};
+        Rows others{}, about{};
         for (const Rows& other : parts)
             for (size_t i = 0; &other != &part && i < others.size(); ++i) others[i] |= other[i];
-        kept |= middle_of([&](int y, int z) {
-            return part[static_cast<size_t>(z * kAlong + y)] & ~touched_in_row(others, y, z);
-        });
+        for (int z = kBlocksAlong; z < 2 * kBlocksAlong; ++z) {
+            uint64_t touched[3];
+            touched_in_layer(others, z, touched);
+            for (int i = 0; i < 3; ++i) about[static_cast<size_t>(3 * z + i)] = touched[i];
+        }
+        kept |= middle_of(part) & ~middle_of(about);
     }
     return ~kept;
 }
