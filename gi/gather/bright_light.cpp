@@ -17,7 +17,7 @@ constexpr uint64_t kCandidates = 4096, kVpls = 1024;
 constexpr size_t kVplsOfAPoint = 64, kCandidatesATask = 64;
 /// Share of the VPLs that is drawn by their light alone, so that what no pilot sees has its VPLs, too.
 constexpr double kByLight = 0.1;
-/// The most that one VPL may bring to a point, over what is typical.
+/// The most that a VPL of mean power may bring to a point, over what is typical.
 constexpr float kMostOfAVpl = 1.0f;
 
 /// Returns what of a radiance is brighter than `most`.

@@ -11,8 +11,8 @@ glm::vec3& side_of(SideLight& light, bool back) {
 
 }  // namespace
 
-void reflect(const Reflectance& reflectance, const Arrived& arrived, uint32_t surfel, bool back,
-             std::vector<SideLight>& light, SideLobes& lobes) {
+void add_reflected(const Reflectance& reflectance, const Arrived& arrived, uint32_t surfel, bool back,
+                   std::vector<SideLight>& light, SideLobes& lobes) {
     side_of(light[surfel], back) += reflectance.kd / kPi * arrived.irradiance;
     if (lobes.light.empty()) return;
     side_of(lobes.light[surfel], back) += reflectance.ks * arrived.irradiance;
@@ -20,7 +20,7 @@ void reflect(const Reflectance& reflectance, const Arrived& arrived, uint32_t su
         reflectance.ks * lobe_mean_cosine(reflectance.exponent) * arrived.directions;
 }
 
-void clear(std::vector<SideLight>& light, SideLobes& lobes) {
+void clear_light(std::vector<SideLight>& light, SideLobes& lobes) {
     light.assign(light.size(), {});
     lobes.light.assign(lobes.light.size(), {});
     lobes.directions.assign(lobes.directions.size(), {});

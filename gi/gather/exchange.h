@@ -26,10 +26,10 @@ struct Arrived {
 
 /// Adds what a side of a surfel reflects to what the surfel sends out, evenly and by a lobe (lobe.h); no
 /// lobes: nothing is glossy.
-void reflect(const Reflectance& reflectance, const Arrived& arrived, uint32_t surfel, bool back,
-             std::vector<SideLight>& light, SideLobes& lobes);
+void add_reflected(const Reflectance& reflectance, const Arrived& arrived, uint32_t surfel, bool back,
+                   std::vector<SideLight>& light, SideLobes& lobes);
 
 /// Sets all light to 0.
-void clear(std::vector<SideLight>& light, SideLobes& lobes);
+void clear_light(std::vector<SideLight>& light, SideLobes& lobes);
 
 }  // namespace lucarne::gi

@@ -108,7 +108,9 @@ class LobeGather {
             pilots.push_back(point_of(shown[static_cast<size_t>(share * static_cast<double>(shown.size()))]));
         }
         std::vector<glm::vec4> found(pilots.size());
-        LUCARNE_TRY(gatherer_.gather(device_, what_, pilots, frame_.settings[kMicroBuffer], seed_, found));
+        LUCARNE_TRY(gatherer_.gather(device_, what_, pilots, frame_.settings[kMicroBuffer], seed_, found,
+                                     frame_.stop));
+        if (frame_.stopped()) return nullptr;
         float typical = 0;
         for (const glm::vec4& light : found) typical += mean_colour(glm::vec3(light)) / kPilots;
         if (!(typical > 0)) return nullptr;

@@ -64,7 +64,9 @@ inline constexpr Option<LightPoints> kLightPoints{{
     .label = "light points",
     .help = "How light is exchanged before the last bounce: between places, by photons, or by VPLs; photons "
             "and VPLs keep specular light directed",
-    .cost = "photons take seconds for each set of points first, and are right where places are too few",
+    .cost = "photons take seconds for each set of points first, and are right where places are too few; VPLs "
+            "do not,\n"
+            "and have more noise where most light falls on what nobody sees",
     .choices = kLightPointKinds,
     .defaults = {int64_t{0}, int64_t{0}, int64_t{1}},
     .cheaper = -1,

@@ -51,6 +51,7 @@ Result<std::vector<float>> MicroBuffers::nearness() const {
 
 Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
     ++tree_;
+    set_no_bright();
     empty_ = tree.empty();
     const WideNode nothing = empty_node();
     const auto bytes = std::as_bytes(empty_ ? std::span(&nothing, 1) : std::span(tree.nodes));
@@ -59,6 +60,7 @@ Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
 }
 
 Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> slots) {
+    set_no_bright();
     if (slots.empty()) return {};
     const auto bytes = std::as_bytes(slots);
     LUCARNE_TRY(device.reserve(light_, bytes.size(), "light of the tree"));

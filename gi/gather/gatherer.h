@@ -52,8 +52,9 @@ class Gatherer {
     /// Sends specular light to the device, which the slots send out beside that of set_light() until it is
     /// replaced. Errors: device memory.
     Result<void> set_lobes(ClDevice& device, const SideLobes& lobes);
-    /// Leaves light out of what gather() finds, until set_no_bright() (BrightLight): of each slot that much,
-    /// W/(sr m^2), as far as it is far beyond the root of `reach2`, m^2. Errors: device memory.
+    /// Leaves light out of what gather() finds (BrightLight), until set_no_bright() or other light or another
+    /// tree comes: of each slot that much, W/(sr m^2), as far as it is far beyond the root of `reach2`, m^2.
+    /// Errors: device memory.
     Result<void> set_bright(ClDevice& device, std::span<const SideLight> slots, float reach2);
     void set_no_bright() { reach2_ = kNoReach; }
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.

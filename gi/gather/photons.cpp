@@ -198,7 +198,7 @@ void Photons::trace(const LitTree& scene, const TracedTree& traced, std::span<co
             }
     }
     pull(tree, sides);
-    if (settings.only_last) clear(light, lobes);
+    if (settings.only_last) clear_light(light, lobes);
     // Returns the side of a node that tells what a side of a leaf receives.
     const auto about = [&](size_t slot, size_t side) -> const Side& {
         for (int up = 0; up < kLevelsUp && !known(sides[slot][side]); ++up) {
@@ -214,10 +214,10 @@ void Photons::trace(const LitTree& scene, const TracedTree& traced, std::span<co
             const Reflectance r =
                 make_reflectance(materials[surfels[i].material % materials.size()], surfels[i].albedo);
             for (size_t side = 0; side < 2; ++side) {
-                const Side& known = about(slot_of[i], side);
-                if (!(known.area > 0)) continue;
-                reflect(r, {known.flux / known.area, known.directions / known.area}, traced.surfel_of[i],
-                        side == 1, light, lobes);
+                const Side& near = about(slot_of[i], side);
+                if (!(near.area > 0)) continue;
+                add_reflected(r, {near.flux / near.area, near.directions / near.area}, traced.surfel_of[i],
+                              side == 1, light, lobes);
             }
         }
     });

@@ -48,6 +48,7 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
     tree_of_.reset();
     light_of_.reset();
     photons_.reset();
+    bright_light_ = {};
     traced_.reset();
     LUCARNE_TRY(lit_.set_surfels(frame));
     LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));

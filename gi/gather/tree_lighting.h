@@ -87,9 +87,9 @@ class TreeLighting {
     LightCutRevisions cuts_;
     std::optional<uint64_t> sky_of_;    ///< revision of the environment that the sky is made from
     std::optional<TracedTree> traced_;  ///< of the tree, once something asks for it
-    BrightLight bright_light_;
-    std::optional<Photons> photons_;   ///< likewise
-    std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
+    std::optional<Photons> photons_;    ///< likewise
+    BrightLight bright_light_;          ///< for the last picture
+    std::optional<uint64_t> tree_of_;   ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()
     SideLobes lobes_;               ///< by slot, that belong to it

@@ -57,11 +57,11 @@ void add_light_of_vpls(const TracedTree& traced, std::span<const Material> mater
     const std::vector<Surfel>& surfels = traced.tracer->surfels();
     std::vector<SideLight> from = light;
     SideLobes from_lobes = lobes;
-    if (settings.only_last) clear(light, lobes);
+    if (settings.only_last) clear_light(light, lobes);
     for (uint32_t bounce = 1; bounce <= settings.bounces; ++bounce) {
         const std::vector<VirtualLight> vpls =
             place_vpls(traced, from, from_lobes, settings.sources, mix64(settings.seed, bounce));
-        clear(from, from_lobes);
+        clear_light(from, from_lobes);
         const size_t stride = std::max<size_t>(vpls.size() / kVplsOfASurfel, 1);
         parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
             if (stop && *stop) return;
@@ -75,7 +75,7 @@ void add_light_of_vpls(const TracedTree& traced, std::span<const Material> mater
                 const Reflectance r =
                     make_reflectance(materials[surfels[i].material % materials.size()], surfels[i].albedo);
                 for (const bool back : {false, true})
-                    reflect(r, sides[back ? 1 : 0], traced.surfel_of[i], back, from, from_lobes);
+                    add_reflected(r, sides[back ? 1 : 0], traced.surfel_of[i], back, from, from_lobes);
             }
         });
         if (stop && *stop) return;

@@ -7,7 +7,6 @@
 #include <glm/vec3.hpp>
 
 #include "gi/gather/traced_tree.h"
-#include "gi/shared/surfel.h"
 #include "gi/surfels/side_light.h"
 
 namespace lucarne::gi {

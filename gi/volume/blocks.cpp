@@ -143,9 +143,8 @@ uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell) {
 int gap_between(float radius, float area) {
     // A square of `a` radii along each side is free of discs at random places if no middle is in the square,
     // beside it or at its corners: (a^2 + 4 a + pi) radius^2. In that area lie kRarity middles.
-    const float coverage = kPi * radius * radius / area;
-    const float radii = std::sqrt(std::max(4 - kPi + kRarity * kPi / coverage, 0.0f)) - 2;
-    const float blocks = std::ceil(radius * radii * kBlocksAlong);
+    const float along = std::sqrt(std::max((4 - kPi) * radius * radius + kRarity * area, 0.0f)) - 2 * radius;
+    const float blocks = std::ceil(along * kBlocksAlong);
     return static_cast<int>(std::clamp(blocks, 1.0f, float{kWidestGap + 1}));
 }
 

@@ -70,10 +70,8 @@ inline Grid finer_grid(const Grid& coarse, const glm::vec3& position) {
         low[axis] = std::clamp(static_cast<int>(std::lround(place[axis])) - cells / 2, 0, most);
         // Outer walls and what is before them are in it as a whole, or not at all: light that enters between
         // voxels of a wall is not known.
-        if (low[axis] < extent / 8)
-            low[axis] = 0;
-        else if (low[axis] > most - extent / 8)
-            low[axis] = most;
+        const int end = 2 * low[axis] < most ? 0 : most;
+        if (std::abs(low[axis] - end) < extent / 8) low[axis] = end;
         grid.size[axis] = std::max(2 * cells - 1, 0);
     }
     // Half a voxel within whole coarse ones: what lies in the middle of those, as outermost walls do, then

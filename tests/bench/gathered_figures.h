@@ -69,7 +69,7 @@ inline Result<void> print_against(const std::string& name, const Stage::Picture&
                                   const Scan::Truth& truth) {
     LUCARNE_ASSIGN(const auto error, gi::compare_with_halves(picture.pixels, truth.first, truth.second));
     double gather = 0;
-    for (const char* pass : {"radiosity", "photons", "VPLs", "gather", "upsample"})
+    for (const char* pass : {"radiosity", "photons", "VPLs", "bright light", "gather", "upsample"})
         gather += pass_seconds(picture.last, pass);
     fmt::print("{:>24} {:>12.2g} {:>10.1g} {:>10.2f} {:>9.2f} {:>9.2f} {:>12.0f}\n", name, error.rel_mse,
                error.standard_error,

@@ -25,7 +25,7 @@ constexpr float kSheet = 2, kCurved = 0.5f, kMostTurn = 0.5f;
 constexpr size_t kMostParts = 256;
 /// Parts of a sheet at most: one that is noisier than its discs are wide hides its own sides.
 constexpr size_t kMostDivided = 4;
-constexpr float kFarther = 0.01f;  ///< of a ray over a curved surface
+constexpr float kFarther = 0.01f;  ///< by this share rays go beyond the point where they meet
 /// Fewer leaves than this that see each other see nothing else: the inside of walls, and foliage. They are
 /// not joined.
 constexpr uint32_t kFewestOfAir = 16;
@@ -221,7 +221,8 @@ bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) const {
     const float along = glm::length(apart - mean * glm::dot(mean, apart));
     const float turn = std::min(glm::length(first - second), kMostTurn);
     if (across > kSheet * std::max(one.radius, other.radius) + kCurved * turn * along) return false;
-    // Over the back of a curved surface: an arc's height is an eighth of its chord times its turn.
+    // Over the back of a curved surface: the tangents at its ends meet a quarter of the chord times its turn
+    // above the chord.
     const auto origin = [](const RayStart& s) {
         return tracing::offset_origin(s.position, s.normal, s.radius);
     };

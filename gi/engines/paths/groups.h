@@ -15,8 +15,9 @@ namespace lucarne::gi::paths {
 /// The hierarchical volumetric data structure of Yue et al. 2007, section 5.3: sides of surfels, grouped by
 /// the cells of an adaptive octree. A group is what one cell holds of one surface: sides that face the same
 /// of six directions, lie in one plane (sheets that are farther apart than their discs are wide are
-/// separate), see each other and see the same air. So light never passes from one side of a wall to the
-/// other, and sealed rooms stay black. Groups of larger cells join those of smaller ones.
+/// separate), see each other and see the same air. So light does not pass from one side of a wall to the
+/// other, and sealed rooms stay black unless discs stick through their walls. Groups of larger cells join
+/// those of smaller ones.
 struct Groups {
     uint32_t leaves = 0;               ///< the first groups are those of the finest cells
     std::vector<uint32_t> leaf_of;     ///< of each side

@@ -147,7 +147,6 @@ TEST_F(MicroEngineTest, LightIsReflectedByLobesBetweenSurfaces) {
         }
 }
 
-// The surfels' light is the same on every run, and no VPL shines through a wall.
 // A micro-buffer finds such a lamp with a sixth of a ray, so that without rays of its own most pixels were
 // black.
 TEST_F(MicroEngineTest, SmallBrightSurfacesLightThePictureSmoothly) {

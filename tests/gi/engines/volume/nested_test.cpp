@@ -93,6 +93,16 @@ TEST(FinerGrid, EndsWithTheCoarseOneIfItNearlyDoes) {
     EXPECT_GT(coarse.place(finer_grid(coarse, glm::vec3(3)).low).x, 4);
 }
 
+TEST(FinerGrid, ReachesBothEndsOfAnAxisLittleLongerThanItself) {
+    const Grid coarse = grid_about(glm::vec3(0), glm::vec3(8, 4.1f, 8), 64);
+    ASSERT_GT(coarse.size.y, 32);
+    ASSERT_LT(coarse.size.y, 36);
+    const Grid lower = finer_grid(coarse, glm::vec3(4, 0, 4)),
+               upper = finer_grid(coarse, glm::vec3(4, 4.1f, 4));
+    EXPECT_NEAR(coarse.place(lower.low).y, .25f, 1e-3f);
+    EXPECT_NEAR(coarse.place(upper.position(glm::vec3(upper.size))).y, coarse.size.y, .3f);
+}
+
 TEST(FinerGrid, HoldsTheAreaThatIsInIt) {
     // Large discs cross its border: a plate of 1 m^2, of which it holds what lies in its box.
     const auto surfels = flat::square(12, 1);
