@@ -42,7 +42,7 @@ glm::vec3 start_of(const tracing::SurfelTracer& tracer, const GatherPoint& point
 
 BrightLight BrightLight::find(const LitTree& scene, const TracedTree& traced,
                               std::span<const SideLight> slots, std::span<const GatherPoint> pilots,
-                              float typical, uint64_t seed) {
+                              float typical, uint64_t seed, const std::atomic<bool>* stop) {
     BrightLight found;
     const SurfelTree& tree = scene.tree();
     std::vector<SideLight> bright(scene.surfels().size());
@@ -52,13 +52,13 @@ BrightLight BrightLight::find(const LitTree& scene, const TracedTree& traced,
             bright[tree.surfels[slot]] = {excess_of(slots[slot].front, most),
                                           excess_of(slots[slot].back, most)};
     const std::vector<VirtualLight> candidates = place_vpls(traced, bright, {}, kCandidates, seed);
-    if (candidates.empty() || pilots.empty()) return found;
+    if (candidates.empty() || pilots.empty() || (stop && *stop)) return found;
 
     std::vector<glm::vec3> starts;
     for (const GatherPoint& pilot : pilots) starts.push_back(start_of(*traced.tracer, pilot));
     std::vector<double> brought(candidates.size());
     parallel_ranges(candidates.size(), kCandidatesATask, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
+        for (size_t i = first; i < last && !(stop && *stop); ++i)
             for (size_t k = 0; k < pilots.size(); ++k) {
                 const float light = mean_colour(far_irradiance(candidates[i], pilots[k], 0));
                 if (light > 0 && !traced.tracer->occluded(starts[k], candidates[i].origin))
@@ -67,7 +67,7 @@ BrightLight BrightLight::find(const LitTree& scene, const TracedTree& traced,
     });
     double all = 0;
     for (const double light : brought) all += light;
-    if (!(all > 0)) return found;
+    if (!(all > 0) || (stop && *stop)) return found;
 
     // Systematic draws in the order of the tree.
     const auto count = static_cast<double>(candidates.size());

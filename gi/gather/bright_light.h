@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,9 +22,11 @@ class BrightLight {
  public:
     /// Finds what is bright for some points (`pilots`) that receive a mean radiance of `typical`, W/(sr m^2):
     /// surfels that send out kBright times as much. `slots`: what the slots of the tree send out evenly. VPLs
-    /// are chosen by what they bring to the pilots. The same arguments give the same light.
+    /// are chosen by what they bring to the pilots. The same arguments give the same light. Finds
+    /// none if `stop` becomes true.
     static BrightLight find(const LitTree& scene, const TracedTree& traced, std::span<const SideLight> slots,
-                            std::span<const GatherPoint> pilots, float typical, uint64_t seed);
+                            std::span<const GatherPoint> pilots, float typical, uint64_t seed,
+                            const std::atomic<bool>* stop = nullptr);
 
     bool empty() const { return vpls_.empty(); }
     /// Of each slot: what of its radiance VPLs bring to far points, W/(sr m^2).

@@ -117,9 +117,9 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
 }
 
 Result<const BrightLight*> TreeLighting::find_bright(std::span<const GatherPoint> pilots, float typical,
-                                                     uint64_t seed) {
+                                                     uint64_t seed, const std::atomic<bool>* stop) {
     LUCARNE_TRY(trace_tree());
-    bright_light_ = BrightLight::find(lit_, *traced_, slots_, pilots, typical, seed);
+    bright_light_ = BrightLight::find(lit_, *traced_, slots_, pilots, typical, seed, stop);
     if (bright_light_.empty()) return nullptr;
     LUCARNE_TRY(gatherer_.set_bright(*opencl_, bright_light_.excess(), bright_light_.reach2()));
     return &bright_light_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -39,7 +40,8 @@ class TreeLighting {
                             LightPoints points = LightPoints::radiosity);
     /// Finds the light that is bright for some points (BrightLight::find()) and has the gatherer leave it
     /// out. make_light() has to come first. Returns none if there is none. Errors: Embree's, a device failed.
-    Result<const BrightLight*> find_bright(std::span<const GatherPoint> pilots, float typical, uint64_t seed);
+    Result<const BrightLight*> find_bright(std::span<const GatherPoint> pilots, float typical, uint64_t seed,
+                                           const std::atomic<bool>* stop);
     /// Gives the gatherer other light: the surfels' own (if `own`), and what slots reflect of this
     /// irradiance, W/m^2, by side (twice the slot, and one more for the back). make_light() has to come
     /// first. Errors: a device failed.

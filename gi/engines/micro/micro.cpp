@@ -69,8 +69,8 @@ Result<void> MicroEngine::gather(Frame& frame) {
                                                                    : Gathered::light_of_surfels;
     FindBright find_bright;
     if (wants_indirect(s))
-        find_bright = [this](std::span<const GatherPoint> pilots, float typical, uint64_t seed) {
-            return lighting_.find_bright(pilots, typical, seed);
+        find_bright = [this, &frame](std::span<const GatherPoint> pilots, float typical, uint64_t seed) {
+            return lighting_.find_bright(pilots, typical, seed, frame.stop);
         };
     LUCARNE_ASSIGN(
         const std::vector<glm::vec4> light,
