@@ -85,4 +85,20 @@ inline constexpr Option<uint64_t> kPhotons{{
     .cheaper = -1,
 }};
 
+/// How the light of lights finds what is in its way.
+enum class Shadows : uint8_t { maps, rays };
+inline constexpr std::array<std::string_view, 2> kShadowKinds = {"maps", "rays"};
+inline constexpr Option<Shadows> kShadows{{
+    .kind = OptionKind::choice,
+    .key = "shadows",
+    .label = "shadows",
+    .help = "Shadows of lights and bright skies by maps of what lights see, or by rays; while the camera "
+            "moves always by maps",
+    .cost = "rays make exact edges, and lights with a size soft in one frame; their time grows with pixels,\n"
+            "surfels and light samples",
+    .choices = kShadowKinds,
+    .defaults = {int64_t{0}, int64_t{1}, int64_t{1}},
+    .cheaper = -1,
+}};
+
 }  // namespace lucarne::gi

@@ -9,10 +9,10 @@
 
 namespace lucarne::gi {
 
-/// The surfels of a tree that rays can hit, in the order of its slots.
+/// The surfels of a tree that rays can hit, in the order of its slots, with the lines at which they end.
 struct TracedTree {
-    /// Errors: Embree's (out of memory).
-    static Result<TracedTree> create(const LitTree& scene);
+    /// `scene`: the tree of the frame's light cut. Errors: Embree's (out of memory).
+    static Result<TracedTree> create(const Frame& frame, const LitTree& scene);
 
     std::unique_ptr<tracing::SurfelTracer> tracer;
     std::vector<uint32_t> slot_of;    ///< of each surfel of `tracer`: its slot in the tree

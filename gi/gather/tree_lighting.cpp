@@ -3,17 +3,26 @@
 #include <string>
 #include <utility>
 
+#include "gi/bounce_options.h"
 #include "gi/gather/gather_options.h"
+#include "gi/gather/traced_lights.h"
 #include "gi/gather/vpl_exchange.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/light_options.h"
+#include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
+#include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace {
 
-constexpr size_t kSlotsATask = 65536;
+constexpr size_t kSlotsATask = 65536, kPixelsAtOnce = 1024;
+
+/// Whether shadows are found by rays: while the camera moves, maps are faster, which stay.
+bool traces_shadows(const Frame& frame) {
+    return frame.settings[kShadows] == Shadows::rays && !frame.moving;
+}
 
 }  // namespace
 
@@ -76,7 +85,7 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
     }
     if (frame.stopped() || !by_rays) return {};
     const TimedPass pass(frame, by_vpls ? "VPLs" : "photons");
-    LUCARNE_TRY(trace_tree());
+    LUCARNE_TRY(trace_tree(frame));
     const std::vector<Material> materials = device_materials(frame.materials);
     SideLobes lobes = lit_.lobes_of_surfels();
     if (by_vpls) {
@@ -116,18 +125,19 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
     return {};
 }
 
-Result<const BrightLight*> TreeLighting::find_bright(std::span<const GatherPoint> pilots, float typical,
-                                                     uint64_t seed, const std::atomic<bool>* stop) {
-    LUCARNE_TRY(trace_tree());
-    bright_light_ = BrightLight::find(lit_, *traced_, slots_, pilots, typical, seed, stop);
+Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<const GatherPoint> pilots,
+                                                     float typical, uint64_t seed) {
+    LUCARNE_TRY(trace_tree(frame));
+    bright_light_ = BrightLight::find(lit_, *traced_, slots_, pilots, typical, seed, frame.stop);
     if (bright_light_.empty()) return nullptr;
     LUCARNE_TRY(gatherer_.set_bright(*opencl_, bright_light_.excess(), bright_light_.reach2()));
     return &bright_light_;
 }
 
-Result<void> TreeLighting::trace_tree() {
+Result<void> TreeLighting::trace_tree(Frame& frame) {
+    LUCARNE_TRY(make_tree(frame));
     if (traced_) return {};
-    LUCARNE_ASSIGN(traced_, TracedTree::create(lit_));
+    LUCARNE_ASSIGN(traced_, TracedTree::create(frame, lit_));
     return {};
 }
 
@@ -158,10 +168,31 @@ Result<void> TreeLighting::set_slots(std::span<const SideLight> slots, const Sid
 Result<void> TreeLighting::add_direct(Frame& frame) {
     const TimedPass pass(frame, "direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, background_, true));
+    if (traces_shadows(frame)) return add_traced(frame);
     for (const LightView& view : views_) {
         LUCARNE_ASSIGN(const GBuffer* seen, light_gbuffers_.look(frame.gl.device, view));
         LUCARNE_TRY(add_light(frame, materials_, view, *seen));
     }
+    return {};
+}
+
+Result<void> TreeLighting::add_traced(Frame& frame) {
+    LUCARNE_TRY(trace_tree(frame));
+    const TracedLights lights(*traced_->tracer, frame.lights, bright_, frame.settings[kLightSamples]);
+    const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
+    const std::vector<Material> materials = device_materials(frame.materials);
+    const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
+    parallel_ranges(surfaces.size(), kPixelsAtOnce, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last && !frame.stopped(); ++i) {
+            const SurfacePoint& at = surfaces[i];
+            if (!(at.radius > 0)) continue;
+            const Reflectance surface =
+                make_reflectance(materials[at.material % materials.size()], at.albedo);
+            radiance[i] += glm::vec4(lights.reflected(at, surface, mix64(~seed, i)), 0);
+        }
+    });
+    if (!frame.stopped()) upload_radiance(frame, radiance);
     return {};
 }
 

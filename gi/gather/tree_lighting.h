@@ -40,8 +40,8 @@ class TreeLighting {
                             LightPoints points = LightPoints::radiosity);
     /// Finds the light that is bright for some points (BrightLight::find()) and has the gatherer leave it
     /// out. make_light() has to come first. Returns none if there is none. Errors: Embree's, a device failed.
-    Result<const BrightLight*> find_bright(std::span<const GatherPoint> pilots, float typical, uint64_t seed,
-                                           const std::atomic<bool>* stop);
+    Result<const BrightLight*> find_bright(Frame& frame, std::span<const GatherPoint> pilots, float typical,
+                                           uint64_t seed);
     /// Gives the gatherer other light: the surfels' own (if `own`), and what slots reflect of this
     /// irradiance, W/m^2, by side (twice the slot, and one more for the back). make_light() has to come
     /// first. Errors: a device failed.
@@ -70,8 +70,10 @@ class TreeLighting {
     /// Sets the light that surfels send out evenly, and `lobes_`. Errors: a device failed.
     Result<void> exchange(Frame& frame, Radiosity::Settings settings, LightPoints points,
                           std::vector<SideLight>& light);
-    /// Makes traced_. Errors: Embree's.
-    Result<void> trace_tree();
+    /// Makes the tree and traced_. Errors: Embree's, a device failed.
+    Result<void> trace_tree(Frame& frame);
+    /// Adds the first reflection of the lights, by rays.
+    Result<void> add_traced(Frame& frame);
     /// Gives the gatherer this light.
     Result<void> set_slots(std::span<const SideLight> slots, const SideLobes& lobes);
 

@@ -120,8 +120,9 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     return {};
 }
 
-std::vector<Surfel> SurfelPool::download(const DeviceCut& cut) const {
+std::vector<Surfel> SurfelPool::download(const DeviceCut& cut, std::vector<uint32_t>* ids) const {
     std::vector<Surfel> surfels;
+    if (ids) ids->clear();
     surfels.reserve(cut.surfels());
     std::vector<PackedSurfel> packed;
     const std::span<const CutBlock> blocks = cut.parts_.blocks;
@@ -138,7 +139,9 @@ std::vector<Surfel> SurfelPool::download(const DeviceCut& cut) const {
             const CutItem& item = cut.parts_.items[blocks[next].item];
             for (uint32_t i = 0; i < blocks[next].count; ++i) {
                 const Surfel surfel = unpack(cut.parts_.items, item, packed[at + i]);
-                if (!item.clip || cut.parts_.clip.keeps(surfel.position)) surfels.push_back(surfel);
+                if (item.clip && !cut.parts_.clip.keeps(surfel.position)) continue;
+                surfels.push_back(surfel);
+                if (ids) ids->push_back(static_cast<uint32_t>(next * kBlockSurfels) + i);
             }
         }
     }

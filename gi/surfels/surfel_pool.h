@@ -110,8 +110,8 @@ class SurfelPool {
                           std::span<const octree::Filling> fillings = {}) const;
 
     /// Decodes the cut's surfels with their footprints on the host, by the same rules, in the order of their
-    /// ids without the gaps. The reference engine traces them.
-    std::vector<Surfel> download(const DeviceCut& cut) const;
+    /// ids without the gaps. Engines that trace rays use them. Sets `ids`, if given, to their ids.
+    std::vector<Surfel> download(const DeviceCut& cut, std::vector<uint32_t>* ids = nullptr) const;
 
  private:
     void upload(const PlacedNode& node, std::span<const PackedSurfel> surfels);

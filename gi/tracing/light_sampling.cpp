@@ -81,7 +81,13 @@ bool is_sharp(const Light& light) {
 }
 
 std::optional<Incident> sample_light(const Light& light, const glm::vec3& position, Random& random) {
-    const auto a = static_cast<float>(random.uniform()), b = static_cast<float>(random.uniform());
+    const double a = random.uniform();
+    return sample_light(light, position, glm::dvec2(a, random.uniform()));
+}
+
+std::optional<Incident> sample_light(const Light& light, const glm::vec3& position,
+                                     const glm::dvec2& square) {
+    const auto a = static_cast<float>(square.x), b = static_cast<float>(square.y);
     if (light.kind == kDirectionalLight) {
         const float drop = a * cap_height(light);  // 1 - cosine
         const float sine = std::sqrt(std::max(0.0f, drop * (2 - drop))), phi = 2 * kPi * b;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "gi/scene/environment.h"
@@ -26,8 +27,9 @@ struct Incident {
 /// lights have to be sampled.
 bool is_sharp(const Light& light);
 
-/// Draws a direction of a light that is not sharp, evenly over its area or cap. Returns none if its dark
-/// side faces the position.
+/// Returns the direction of a light that is not sharp which belongs to a point of the unit square: even
+/// points are even over its area or cap. Returns none if its dark side faces the position.
+std::optional<Incident> sample_light(const Light& light, const glm::vec3& position, const glm::dvec2& square);
 std::optional<Incident> sample_light(const Light& light, const glm::vec3& position, Random& random);
 /// Returns the light that such a light sends along a given direction, with the density of sample_light() for
 /// it.

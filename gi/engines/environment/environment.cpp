@@ -28,9 +28,9 @@ namespace environment {
 namespace {
 
 constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,        &kOnlyBounce.info,  &kMicroBuffer.info,     &kCacheSpacing.info,
-    &kRadiosityLevel.info, &kGatherEvery.info, &kLightResolution.info, &kLightSamples.info,
-    &kBruteForce.info,     &kSeed.info};
+    &kBounces.info,        &kOnlyBounce.info,  &kMicroBuffer.info, &kCacheSpacing.info,
+    &kRadiosityLevel.info, &kGatherEvery.info, &kShadows.info,     &kLightResolution.info,
+    &kLightSamples.info,   &kBruteForce.info,  &kSeed.info};
 constexpr EngineInfo kInfo{
     .name = "environment",
     .label = "Environment lighting",

@@ -18,10 +18,10 @@ namespace lucarne::gi {
 namespace micro {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,         &kOnlyBounce.info,   &kMicroBuffer.info, &kGatherEvery.info,
-    &kRadiosityLevel.info,  &kLightPoints.info,  &kPhotons.info,     &kVpls.info,
-    &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {&kBounces.info,         &kOnlyBounce.info,     &kMicroBuffer.info,
+                                          &kGatherEvery.info,     &kRadiosityLevel.info, &kLightPoints.info,
+                                          &kPhotons.info,         &kVpls.info,           &kShadows.info,
+                                          &kLightResolution.info, &kLightSamples.info,   &kSeed.info};
 constexpr EngineInfo kInfo{.name = "micro",
                            .label = "Final gathering",
                            .description = "final gathering of the light of all surfels, on OpenCL",
@@ -70,7 +70,7 @@ Result<void> MicroEngine::gather(Frame& frame) {
     FindBright find_bright;
     if (wants_indirect(s))
         find_bright = [this, &frame](std::span<const GatherPoint> pilots, float typical, uint64_t seed) {
-            return lighting_.find_bright(pilots, typical, seed, frame.stop);
+            return lighting_.find_bright(frame, pilots, typical, seed);
         };
     LUCARNE_ASSIGN(
         const std::vector<glm::vec4> light,

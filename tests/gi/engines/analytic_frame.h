@@ -85,6 +85,7 @@ struct AnalyticScene {
     CameraView camera;
     EngineSettings settings = test_settings();
     std::shared_ptr<const Environment> environment = nullptr;
+    bool moving = false;
     /// Number of materials of the scene for which the surfels were packed, if it had more.
     size_t packed_materials = 0;
     /// What the engine has computed in advance, for pictures of the same surfels (Lit::bake); null: it
@@ -126,6 +127,7 @@ inline Result<Lit> render(Device& device, std::string_view engine_name, const An
     options.index = index;
     options.environment = scene.environment;
     options.bake = scene.bake;
+    options.moving = scene.moving;
     return draw_frame(device, *engine, pool, cut, scene.camera, bounds, options);
 }
 

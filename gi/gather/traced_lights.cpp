@@ -1,0 +1,88 @@
+#include "gi/gather/traced_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include "gi/lighting/area_points.h"
+#include "gi/tracing/light_sampling.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi {
+namespace {
+
+bool is_dark(const Light& light) {
+    return !(light.strength.x > 0 || light.strength.y > 0 || light.strength.z > 0);
+}
+
+/// Even points of the unit square: the R2 sequence from a place that `random` chooses.
+class Squares {
+ public:
+    explicit Squares(Random& random) : start_(random.uniform(), 0) { start_.y = random.uniform(); }
+    glm::dvec2 at(uint32_t i) const { return glm::fract(start_ + static_cast<double>(i) * kR2); }
+
+ private:
+    glm::dvec2 start_;
+};
+
+}  // namespace
+
+TracedLights::TracedLights(const tracing::SurfelTracer& tracer, std::span<const Light> lights,
+                           const SkyDirections& sky, uint32_t samples)
+    : tracer_(tracer), sky_(sky) {
+    for (const Light& light : lights)
+        if (!is_dark(light)) (tracing::is_sharp(light) ? sharp_ : soft_).push_back(light);
+    const size_t takers = soft_.size() + (sky_.dark() ? 0 : 1);
+    if (takers > 0) samples_ = std::max<uint32_t>(samples / static_cast<uint32_t>(takers), 1);
+}
+
+glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& surface, uint64_t key) const {
+    // Most points face no light, or few, so the start of rays is found when it is needed.
+    std::optional<glm::vec3> start;
+    const auto is_lit = [&](const glm::vec3& direction, float distance) {
+        if (!start) {
+            const glm::vec3 above = tracing::offset_origin(point.position, point.normal, point.radius);
+            start = tracing::before_what_hides(tracer_, above, point.viewer, point.radius);
+        }
+        return std::isinf(distance) ? !tracer_.occluded_along(*start, direction)
+                                    : !tracer_.occluded(*start, point.position + direction * distance);
+    };
+    glm::vec3 sum(0.0f);
+    // `irradiance`: of a surface across the direction.
+    const auto add = [&](const glm::vec3& in, const glm::vec3& irradiance, float distance) {
+        const float cosine = glm::dot(point.normal, in);
+        if (cosine > 0 && is_lit(in, distance))
+            sum += brdf(surface, point.normal, point.viewer, in) * cosine * irradiance;
+    };
+    for (const Light& light : sharp_) {
+        glm::vec3 in;
+        const glm::vec3 irradiance = light_irradiance(light, point.position, point.normal, in);
+        const float distance = light.kind == kDirectionalLight
+                                   ? std::numeric_limits<float>::infinity()
+                                   : glm::length(glm::vec3(light.position) - point.position);
+        if (irradiance != glm::vec3(0.0f) && is_lit(in, distance))
+            sum += brdf(surface, point.normal, point.viewer, in) * irradiance;
+    }
+    Random random(key);
+    const float share = 1 / static_cast<float>(samples_);
+    for (const Light& light : soft_) {
+        const Squares squares(random);
+        for (uint32_t i = 0; i < samples_; ++i)
+            if (const auto in = tracing::sample_light(light, point.position, squares.at(i)))
+                add(in->direction, in->radiance * (share / in->pdf), in->distance);
+    }
+    if (sky_.dark()) return sum;
+    const Squares squares(random);
+    for (uint32_t i = 0; i < samples_; ++i) {
+        const SkyDirections::Drawn drawn = sky_.draw(squares.at(i));
+        add(drawn.direction, drawn.flux * share, std::numeric_limits<float>::infinity());
+    }
+    return sum;
+}
+
+}  // namespace lucarne::gi

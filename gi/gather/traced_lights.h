@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/host_frame.h"
+#include "gi/lighting/sky_directions.h"
+#include "gi/shared/brdf.h"
+#include "gi/shared/light.h"
+#include "gi/tracing/surfel_tracer.h"
+
+namespace lucarne::gi {
+
+/// The lights of a scene with shadows by rays: each point asks for itself what it sees of each light. So
+/// shadows have no texels, and lights with a size shine softly in one frame.
+class TracedLights {
+ public:
+    /// `sky` shines as well. About `samples` rays from each point are shared out among the lights with a size
+    /// and the sky, at least one each. `tracer` and `sky` must outlive this.
+    TracedLights(const tracing::SurfelTracer& tracer, std::span<const Light> lights, const SkyDirections& sky,
+                 uint32_t samples);
+
+    /// Returns what a point reflects of the lights to its viewer, W/(sr m^2). `key` chooses the samples.
+    glm::vec3 reflected(const SurfacePoint& point, const Reflectance& surface, uint64_t key) const;
+
+ private:
+    const tracing::SurfelTracer& tracer_;
+    std::vector<Light> sharp_, soft_;
+    const SkyDirections& sky_;
+    uint32_t samples_ = 1;  ///< of each light with a size
+};
+
+}  // namespace lucarne::gi

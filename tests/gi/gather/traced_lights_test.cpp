@@ -1,0 +1,91 @@
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
+#include "gi/engines/reference/options.h"
+#include "gi/gather/gather_options.h"
+#include "gi/lighting/light_options.h"
+#include "gi/registry.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
+
+namespace lucarne::gi {
+namespace {
+
+using scenes::AnalyticScene, scenes::kO, scenes::kX, scenes::kY, scenes::kZ;
+
+/// Direct light alone, of a floor and a wall behind a board in the air.
+class TracedLightsTest : public OnDevice {
+ protected:
+    TracedLightsTest() {
+        scenes::add_rectangle(scene_.surfels, kO, 2.0f * kX, 2.0f * kY, 60, glm::vec3(0.6f));
+        scenes::add_rectangle(scene_.surfels, {0, 2, 0}, 2.0f * kX, 2.0f * kZ, 60, glm::vec3(0.6f));
+        scenes::add_rectangle(scene_.surfels, {0.7f, 0.8f, 0.6f}, 0.6f * kX, 0.6f * kY, 18, glm::vec3(0.6f));
+        scene_.camera = scenes::look({1, -1.5f, 1.6f}, {1, 1, 0.4f}, 0.6f, 64);
+        scene_.settings.set(kOnlyBounce, 0);
+        scene_.settings.set(kShadows, Shadows::rays);
+        scene_.settings.set(reference::kSamples, 512);
+    }
+    Lit render(std::string_view engine) {
+        auto rendered = scenes::render(*device, engine, scene_);
+        EXPECT_TRUE(rendered) << rendered.error().line();
+        return rendered ? std::move(*rendered) : Lit{};
+    }
+    double error(std::string_view engine) {
+        const auto metrics = compare_images(render(engine).radiance, render("reference").radiance);
+        EXPECT_TRUE(metrics);
+        return metrics ? metrics->rel_mse : 1e9;
+    }
+
+    AnalyticScene scene_;
+};
+
+TEST_F(TracedLightsTest, PixelsSeeSharpLightsAsInTheReference) {
+    scene_.lights = {scenes::spot({0.6f, 0.4f, 2}, {1, 1, 0}, 0.7f, 0.6f, 50),
+                     scenes::point({1.8f, 0.3f, 1}, 10)};
+    scene_.materials = {scenes::material(0.6f, 0.4f, 20, 0.1f)};
+    for (const std::string_view engine : {"micro", "environment"}) EXPECT_LT(error(engine), 1e-6) << engine;
+}
+
+// Two points of the lamp and eight directions of the sun stood for them in one frame.
+TEST_F(TracedLightsTest, LightsWithASizeAreSoftInOneFrame) {
+    scene_.lights = {scenes::rectangle_light({1, 1, 2}, 0.4f * kX, 0.4f, -kZ, 20),
+                     scenes::wide_sun({0.5f, 0.3f, -1}, 0.1f, 10)};
+    scene_.settings.set(kLightSamples, 16);
+    for (const std::string_view engine : {"micro", "environment"}) EXPECT_LT(error(engine), 0.005) << engine;
+}
+
+TEST_F(TracedLightsTest, TheBrightPartOfASkyShinesInOneFrame) {
+    auto sky = std::make_shared<Environment>();
+    sky->width = 64;
+    sky->height = 32;
+    sky->texels.assign(64 * 32, glm::vec3(0.2f));
+    for (const size_t y : {8, 9})
+        for (const size_t x : {30, 31}) sky->texels[64 * y + x] = glm::vec3(2000);
+    scene_.environment = sky;
+    scene_.settings.set(kLightSamples, 16);
+    scene_.settings.set(kGatherEvery, 1);
+    for (const std::string_view engine : {"micro", "environment"}) EXPECT_LT(error(engine), 0.01) << engine;
+}
+
+TEST_F(TracedLightsTest, PicturesInMotionHaveShadowsByMaps) {
+    scene_.lights = {scenes::spot({0.6f, 0.4f, 2}, {1, 1, 0}, 0.7f, 0.6f, 50)};
+    for (const std::string_view engine : {"micro", "environment"}) {
+        const auto by_rays = render(engine).radiance;
+        scene_.moving = true;
+        const auto in_motion = render(engine).radiance;
+        scene_.moving = false;
+        scene_.settings.set(kShadows, Shadows::maps);
+        EXPECT_EQ(render(engine).radiance, in_motion) << engine;
+        scene_.settings.set(kShadows, Shadows::rays);
+        EXPECT_NE(by_rays, in_motion) << engine;
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::gi
