@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "gi/lighting/area_points.h"
 #include "gi/tracing/light_sampling.h"
 #include "io/core/random.h"
 
@@ -20,14 +19,19 @@ bool is_dark(const Light& light) {
     return !(light.strength.x > 0 || light.strength.y > 0 || light.strength.z > 0);
 }
 
-/// Even points of the unit square: the R2 sequence from a place that `random` chooses.
-class Squares {
+/// Even points of the unit square: a Fibonacci lattice, at a place that `random` chooses.
+class Lattice {
  public:
-    explicit Squares(Random& random) : start_(random.uniform(), 0) { start_.y = random.uniform(); }
-    glm::dvec2 at(uint32_t i) const { return glm::fract(start_ + static_cast<double>(i) * kR2); }
+    Lattice(uint32_t count, Random& random) : count_(count), shift_(random.uniform(), 0) {
+        shift_.y = random.uniform();
+    }
+    glm::dvec2 at(uint32_t i) const {
+        return glm::fract(shift_ + glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_));
+    }
 
  private:
-    glm::dvec2 start_;
+    uint32_t count_;
+    glm::dvec2 shift_;
 };
 
 }  // namespace
@@ -71,15 +75,15 @@ glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& 
     Random random(key);
     const float share = 1 / static_cast<float>(samples_);
     for (const Light& light : soft_) {
-        const Squares squares(random);
+        const Lattice points(samples_, random);
         for (uint32_t i = 0; i < samples_; ++i)
-            if (const auto in = tracing::sample_light(light, point.position, squares.at(i)))
+            if (const auto in = tracing::sample_light(light, point.position, points.at(i)))
                 add(in->direction, in->radiance * (share / in->pdf), in->distance);
     }
     if (sky_.dark()) return sum;
-    const Squares squares(random);
+    const Lattice points(samples_, random);
     for (uint32_t i = 0; i < samples_; ++i) {
-        const SkyDirections::Drawn drawn = sky_.draw(squares.at(i));
+        const SkyDirections::Drawn drawn = sky_.draw(points.at(i));
         add(drawn.direction, drawn.flux * share, std::numeric_limits<float>::infinity());
     }
     return sum;

@@ -17,7 +17,7 @@
 namespace lucarne::gi {
 namespace {
 
-using scenes::AnalyticScene, scenes::kO, scenes::kX, scenes::kY, scenes::kZ;
+using scenes::AnalyticScene;
 
 /// Direct light alone, of a floor and a wall behind a board in the air.
 class TracedLightsTest : public OnDevice {
@@ -57,7 +57,7 @@ TEST_F(TracedLightsTest, LightsWithASizeAreSoftInOneFrame) {
     scene_.lights = {scenes::rectangle_light({1, 1, 2}, 0.4f * kX, 0.4f, -kZ, 20),
                      scenes::wide_sun({0.5f, 0.3f, -1}, 0.1f, 10)};
     scene_.settings.set(kLightSamples, 16);
-    for (const std::string_view engine : {"micro", "environment"}) EXPECT_LT(error(engine), 0.005) << engine;
+    for (const std::string_view engine : {"micro", "environment"}) EXPECT_LT(error(engine), 0.002) << engine;
 }
 
 TEST_F(TracedLightsTest, TheBrightPartOfASkyShinesInOneFrame) {
@@ -66,7 +66,7 @@ TEST_F(TracedLightsTest, TheBrightPartOfASkyShinesInOneFrame) {
     sky->height = 32;
     sky->texels.assign(64 * 32, glm::vec3(0.2f));
     for (const size_t y : {8, 9})
-        for (const size_t x : {30, 31}) sky->texels[64 * y + x] = glm::vec3(2000);
+        for (const size_t x : {8, 9}) sky->texels[64 * y + x] = glm::vec3(2000);
     scene_.environment = sky;
     scene_.settings.set(kLightSamples, 16);
     scene_.settings.set(kGatherEvery, 1);

@@ -6,6 +6,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/engines/environment/kept_caches.h"
+#include "gi/gather/gather_options.h"
 #include "gi/registry.h"
 #include "gi/shared/luminance.h"
 #include "tests/gi/engines/lit_scene.h"
@@ -20,6 +21,7 @@ class EnvironmentMotion : public OnDevice {
     EnvironmentMotion() : cloud_(scenes::closed_box(2, 60, glm::vec3(.6f))) {
         options_.lights = {scenes::spot(glm::vec3(.6f, 1, 1.8f), glm::vec3(1, 1, 0), .6f, .6f, 5)};
         options_.settings.set(kBounces, 2);
+        options_.settings.set(kShadows, Shadows::maps);  // as in motion: it is other light that is kept
         options_.bounds = {glm::vec3(0), glm::vec3(2)};
     }
     std::vector<glm::vec4> picture(Engine& engine, const glm::vec3& target) {
