@@ -25,6 +25,7 @@ constexpr size_t kPhotonsAtOnce = 65536, kPhotonsATask = 512, kLeavesATask = 409
 /// levels further up. So flux stays within some surfels of where it arrived.
 constexpr uint32_t kPhotonsOfANode = 16, kPointsOfANode = 16;
 constexpr int kLevelsUp = 3;
+constexpr int kMostCovers = 4;  ///< of a disc that others cover which are covered themselves
 /// Nodes thicker than this share of their bound hold more than one surface, or a bent one.
 constexpr float kFlat = 0.25f;
 
@@ -145,6 +146,16 @@ void Photons::set_surfels(const LitTree& scene, const TracedTree& traced) {
         if (child >= 0) parent_of_[static_cast<size_t>(child)] = static_cast<uint32_t>(slot);
     }
     exposures_ = tracing::exposures(*traced.tracer);
+    shown_.resize(2 * exposures_.size());
+    for (uint32_t i = 0; i < shown_.size(); ++i) {
+        shown_[i] = i;
+        for (int covers = 0; covers < kMostCovers; ++covers) {
+            const auto& [front, back] = exposures_[shown_[i] / 2];
+            const tracing::Exposure& at = shown_[i] % 2 == 0 ? front : back;
+            if (at.points > 0 || at.cover == tracing::kUncovered) break;
+            shown_[i] = at.cover;
+        }
+    }
 }
 
 void Photons::trace(const LitTree& scene, const TracedTree& traced, std::span<const Material> materials,
@@ -158,9 +169,9 @@ void Photons::trace(const LitTree& scene, const TracedTree& traced, std::span<co
     areas.reserve(2 * slot_of.size());
     for (size_t i = 0; i < slot_of.size(); ++i) {
         const float area = kPi * surfels[i].radius * surfels[i].radius / tracing::kExposurePoints;
-        const auto [front, back] = exposures_[i];
-        sides[slot_of[i]] = {Side{.area = area * front, .points = front},
-                             Side{.area = area * back, .points = back}};
+        const auto& [front, back] = exposures_[i];
+        sides[slot_of[i]] = {Side{.area = area * static_cast<float>(front.points), .points = front.points},
+                             Side{.area = area * static_cast<float>(back.points), .points = back.points}};
         for (const Side& side : sides[slot_of[i]]) areas.push_back(side.area);
     }
     const LightSources sources(traced.surfel_of, areas, light, lobes);
@@ -203,7 +214,9 @@ void Photons::trace(const LitTree& scene, const TracedTree& traced, std::span<co
     const auto about = [&](size_t slot, size_t side) -> const Side& {
         for (int up = 0; up < kLevelsUp && !known(sides[slot][side]); ++up) {
             const uint32_t parent = parent_of_[slot / 8];
-            if (parent == kNoSurfel || !flat(tree, parent)) break;
+            // Where no disc is exposed, a bent surface tells more than none.
+            const bool none = !(sides[slot][side].area > 0);
+            if (parent == kNoSurfel || (!none && !flat(tree, parent))) break;
             if (!facing(tree, parent, slot).same) side = 1 - side;
             slot = parent;
         }
@@ -214,7 +227,8 @@ void Photons::trace(const LitTree& scene, const TracedTree& traced, std::span<co
             const Reflectance r =
                 make_reflectance(materials[surfels[i].material % materials.size()], surfels[i].albedo);
             for (size_t side = 0; side < 2; ++side) {
-                const Side& near = about(slot_of[i], side);
+                const uint32_t shown = shown_[2 * i + side];
+                const Side& near = about(slot_of[shown / 2], shown % 2);
                 if (!(near.area > 0)) continue;
                 add_reflected(r, {near.flux / near.area, near.directions / near.area}, traced.surfel_of[i],
                               side == 1, light, lobes);

@@ -17,7 +17,8 @@ namespace lucarne::gi {
 /// 2009, section 4, gather from such maps). They leave lit surfels, in proportion to what these send out, and
 /// are reflected by both lobes. The irradiance of a surfel is the flux of the photons on it, and on others
 /// about it in the tree, over the area of them that light can meet (gi/tracing/exposure.h). Surfels' own
-/// shares of the surface would not do: in gaps of scans a surfel with a small share receives much light.
+/// shares of the surface would not do: in gaps of scans a surfel with a small share receives much light. A
+/// side that others cover has the irradiance of what covers it: nodes are means of all their surfels.
 class Photons {
  public:
     /// Takes the surfels of a tree. `traced` is made from it.
@@ -32,8 +33,10 @@ class Photons {
                const std::atomic<bool>* stop = nullptr) const;
 
  private:
-    std::vector<tracing::Exposure> exposures_;  ///< of each traced surfel
-    std::vector<uint32_t> parent_of_;           ///< of each node: the slot whose child it is
+    std::vector<tracing::Exposures> exposures_;  ///< of each traced surfel
+    /// Of each side (twice the traced surfel, and one more for its back): itself, or the side that covers it.
+    std::vector<uint32_t> shown_;
+    std::vector<uint32_t> parent_of_;  ///< of each node: the slot whose child it is
 };
 
 }  // namespace lucarne::gi

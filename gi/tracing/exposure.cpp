@@ -12,27 +12,45 @@ constexpr size_t kSurfelsATask = 4096;
 constexpr float kHeight = 2;
 constexpr uint64_t kExposureSeed = 0xe4705;
 
+/// Where rays start above a point of the disc of a surfel.
+glm::vec3 above(const Surfel& surfel, const glm::vec3& point, const glm::vec3& normal) {
+    return point + normal * (kHeight * surfel.radius);
+}
+
+/// Returns whether nothing is between a point of a disc and its middle. Discs of a wall's foot reach through
+/// it.
+bool is_this_side(const SurfelTracer& tracer, const Surfel& surfel, const glm::vec3& point,
+                  const glm::vec3& normal) {
+    return !tracer.occluded(above(surfel, surfel.position, normal), above(surfel, point, normal));
+}
+
 }  // namespace
 
 bool is_exposed(const SurfelTracer& tracer, size_t surfel, const glm::vec3& point, const glm::vec3& normal) {
-    const glm::vec3 origin = point + normal * (kHeight * tracer.surfels()[surfel].radius);
-    const auto hit = tracer.first_hit(origin, -normal);
-    return hit && hit->surfel == surfel;
+    const Surfel& disc = tracer.surfels()[surfel];
+    const auto hit = tracer.first_hit(above(disc, point, normal), -normal);
+    return hit && hit->surfel == surfel && is_this_side(tracer, disc, point, normal);
 }
 
-std::vector<Exposure> exposures(const SurfelTracer& tracer) {
+std::vector<Exposures> exposures(const SurfelTracer& tracer) {
     const std::vector<Surfel>& surfels = tracer.surfels();
-    std::vector<Exposure> result(surfels.size());
+    std::vector<Exposures> result(surfels.size());
     parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const Surfel& surfel = surfels[i];
             Random random(kExposureSeed, i);
             const auto seen = [&](const glm::vec3& normal) {
-                uint8_t points = 0;
+                Exposure exposure;
                 for (uint32_t k = 0; k < kExposurePoints; ++k) {
-                    if (is_exposed(tracer, i, point_on_disc(surfel, random), normal)) ++points;
+                    const glm::vec3 point = point_on_disc(surfel, random);
+                    const auto hit = tracer.first_hit(above(surfel, point, normal), -normal);
+                    if (!hit) continue;
+                    if (hit->surfel != i)
+                        exposure.cover = 2 * hit->surfel + (hit->back ? 1 : 0);
+                    else if (is_this_side(tracer, surfel, point, normal))
+                        ++exposure.points;
                 }
-                return points;
+                return exposure;
             };
             result[i].front = seen(surfel.normal);
             result[i].back = seen(-surfel.normal);

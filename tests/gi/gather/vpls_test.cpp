@@ -59,7 +59,7 @@ TEST(Vpls, TheirFluxIsThatOfWhatNothingCovers) {
     double expected = 0, flux = 0;
     for (size_t i = 0; i < 900; ++i) {
         const float radius = lit.traced.tracer->surfels()[i].radius;
-        expected += kPi * kPi * radius * radius * exposures[i].front / tracing::kExposurePoints;
+        expected += kPi * kPi * radius * radius * exposures[i].front.points / tracing::kExposurePoints;
     }
     const auto vpls = place_vpls(lit.traced, lit.light, {}, 500, 3);
     ASSERT_EQ(vpls.size(), 500u);

@@ -22,8 +22,8 @@ ExposedAreas exposed(const std::vector<Surfel>& surfels, size_t first, size_t la
     ExposedAreas sum;
     for (size_t i = first; i < last; ++i) {
         const double point = kPi * surfels[i].radius * surfels[i].radius / kExposurePoints;
-        sum.front += point * exposure[i].front;
-        sum.back += point * exposure[i].back;
+        sum.front += point * exposure[i].front.points;
+        sum.back += point * exposure[i].back.points;
     }
     return sum;
 }
@@ -58,6 +58,30 @@ TEST(Exposure, ASheetJustBelowAnotherHasItsBackAlone) {
     EXPECT_GT(below.back, .98);
     EXPECT_GT(above.front, .98);
     EXPECT_LT(above.back, .01);
+
+    const auto tracer = SurfelTracer::create(sheets);
+    ASSERT_TRUE(tracer);
+    const auto exposure = exposures(**tracer);
+    for (size_t i = 0; i < sheets.size(); ++i) {
+        const bool is_lower = i < lower;
+        const Exposure& covered = is_lower ? exposure[i].front : exposure[i].back;
+        if (covered.points > 0) continue;
+        EXPECT_EQ(covered.cover % 2, is_lower ? 0u : 1u) << "the side that looks out";
+        EXPECT_EQ(covered.cover / 2 < lower, !is_lower);
+    }
+}
+
+TEST(Exposure, WhatOfADiscLiesBehindAWallIsNotExposed) {
+    std::vector<Surfel> room;
+    scenes::add_rectangle(room, kO, kX, kY, 40, glm::vec3(0.5f));
+    const size_t floor = room.size();
+    for (const glm::vec3& corner : {kO, kX})
+        scenes::add_rectangle(room, corner - kY - kZ, 3.0f * kY, 3.0f * kZ, 120, glm::vec3(0.5f));
+    for (const glm::vec3& corner : {kO, kY})
+        scenes::add_rectangle(room, corner - kX - kZ, 3.0f * kX, 3.0f * kZ, 120, glm::vec3(0.5f));
+    const ExposedAreas areas = exposed(room, 0, floor);
+    EXPECT_NEAR(areas.front, 1, .015);
+    EXPECT_NEAR(areas.back, 1, .015);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "gi/engines/reference/options.h"
 #include "gi/gather/gather_options.h"
 #include "gi/lighting/light_options.h"
+#include "io/core/random.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/glossy_corner.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -218,6 +219,30 @@ TEST_F(MicroEngineTest, ACameraInAWallGivesFinitePictures) {
     AnalyticScene scene = room(material(1, 0, 1, 0));
     scene.camera = look(glm::vec3(0.0f, 1, 1), glm::vec3(1, 1.2f, 1), 0.7f, 32);
     for (const glm::vec4& pixel : render(scene).radiance) ASSERT_TRUE(std::isfinite(pixel.x));
+}
+
+// Discs at the foot of a wall reach through it. What lies behind it counted as lit surface, and a tenth of
+// the light was lost.
+TEST_F(MicroEngineTest, PhotonsAndVplsLoseNoLightInCornersOfNoisyRooms) {
+    AnalyticScene scene;
+    scene.surfels = scenes::closed_box(2, 40, glm::vec3(0.5f));
+    Random random(7);
+    for (Surfel& s : scene.surfels)
+        s.position += s.normal * (0.3f * s.radius * static_cast<float>(random.uniform() - 0.5));
+    scene.lights = {spot({0.6f, 1, 1.6f}, {1, 1, 0}, 0.7f, 0.5f, 5)};
+    scene.camera = look(glm::vec3(0.4f, 0.4f, 1.2f), glm::vec3(1.4f, 1.4f, 0.9f), 0.7f, 48);
+    scene.settings.set(kOnlyBounce, 2);
+    scene.settings.set(kMicroBuffer, 24);
+    scene.settings.set(kGatherEvery, 2);
+    scene.settings.set(kPhotons, 1'048'576);
+    scene.settings.set(kVpls, 1024);
+    scene.settings.set(reference::kSamples, 256);
+    const double truth = mean_luminance(render(scene, "reference").radiance);
+    for (const LightPoints points : {LightPoints::photons, LightPoints::vpls}) {
+        scene.settings.set(kLightPoints, points);
+        EXPECT_NEAR(mean_luminance(render(scene).radiance) / truth, 1, 0.045)
+            << kLightPointKinds[static_cast<size_t>(points)];
+    }
 }
 
 }  // namespace
