@@ -6,6 +6,7 @@
 #include "gi/shared/lobe.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/flat_surfels.h"
+#include "gi/surfels/plane_normals.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi {
@@ -15,7 +16,7 @@ constexpr size_t kLitAtOnce = 16384;
 
 }  // namespace
 
-Result<void> LitSurfels::set_surfels(Frame& frame) {
+Result<void> LitSurfels::set_surfels(Frame& frame, Bare bare) {
     own_.clear();
     reflectances_.clear();
     surfels_.clear();
@@ -24,6 +25,7 @@ Result<void> LitSurfels::set_surfels(Frame& frame) {
     if (count == 0) return {};
     LUCARNE_TRY(flatten(frame.gl.device, cut, flat_));
     surfels_ = flat_.download_all<FlatSurfel>(count);
+    if (bare == Bare::of_planes && add_plane_normals(surfels_)) flat_.upload_all(surfels_);
     return {};
 }
 

@@ -18,11 +18,17 @@ enum class Specular : uint8_t {
     apart,  ///< it is kept as lobes
 };
 
+/// What becomes of surfels without a normal, of which a scan consists while it is being read.
+enum class Bare : uint8_t {
+    dark,       ///< they send out no light
+    of_planes,  ///< they have the normal of the plane about them (plane_normals.h)
+};
+
 /// The surfels of a light cut on the host, and the light that they send out before any bounce.
 class LitSurfels {
  public:
     /// Takes the surfels of frame.gl.cuts.light. Drops the light. Errors: device memory, a shader that fails.
-    Result<void> set_surfels(Frame& frame);
+    Result<void> set_surfels(Frame& frame, Bare bare = Bare::dark);
     /// Computes what the surfels emit, and what they reflect of these views of the lights. Gives up if
     /// the frame is stopped. Errors as above.
     Result<void> set_light(Frame& frame, const std::vector<LightView>& views, LightGBuffers& gbuffers,

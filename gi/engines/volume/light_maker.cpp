@@ -136,7 +136,7 @@ Result<StepResult> LightMaker::take_surfels(Work& work) {
     if (same) return StepResult::done;
     surfels_of_.reset();
     surfels_lit_.reset();
-    LUCARNE_TRY(surfels_.set_surfels(work.frame));
+    LUCARNE_TRY(surfels_.set_surfels(work.frame, Bare::of_planes));
     surfels_of_ = now;
     return StepResult::done;
 }
