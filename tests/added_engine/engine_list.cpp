@@ -25,4 +25,8 @@ const EngineInfo& default_engine() {
     return vpl_engine().info;
 }
 
+const EngineInfo& stand_in_engine() {
+    return volume_engine().info;
+}
+
 }  // namespace lucarne::gi

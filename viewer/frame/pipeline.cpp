@@ -138,7 +138,7 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
 gi::EngineNeeds Pipeline::State::needs(const FrameRequest& request) const {
     gi::EngineNeeds all = engine->info().needs;
     if (other) all = all | other->info().needs;
-    if (!request.wait && engine->info().reports_progress) all = all | gi::default_engine().needs;
+    if (!request.wait && engine->info().reports_progress) all = all | gi::stand_in_engine().needs;
     return all;
 }
 
@@ -228,12 +228,16 @@ Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& requ
         return DrawingEngines{colours.get()};
     }
     const bool quick = request.stand_in || (request.stand_in_early && surfels.stats().pending > 0);
-    const auto may_draw = [&](const gi::Engine& one) { return !quick || !one.info().reports_progress; };
+    const bool unprepared =
+        request.stand_in_early && engine->info().precomputes && !baked.bake && !baked.ended;
+    const auto may_draw = [&](const gi::Engine& one) {
+        return !(quick && one.info().reports_progress) && !(unprepared && &one == engine.get());
+    };
     gi::Engine* const compared = other && may_draw(*other) ? other.get() : nullptr;
     if (may_draw(*engine)) return DrawingEngines{engine.get(), compared};
     if (engine->keeps_light(settings, content)) return DrawingEngines{engine.get(), compared, true};
     if (!stand_in) {
-        LUCARNE_ASSIGN(stand_in, gi::make_engine(gi::default_engine().name));
+        LUCARNE_ASSIGN(stand_in, gi::make_engine(gi::stand_in_engine().name));
     }
     return DrawingEngines{stand_in.get(), compared};
 }
@@ -315,10 +319,10 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("load");
     LUCARNE_TRY(stream(request));
     times.end();
+    LUCARNE_TRY(take_bake(request));
     LUCARNE_ASSIGN(const DrawingEngines now, drawing_engines(request));
     if (std::exchange(drawing, now) != now) presentation.restart();
     LUCARNE_TRY(build_cuts(drawing.engine->reads_light_cuts() || drawing.keeps_light));
-    LUCARNE_TRY(take_bake(request));
     const bool other_sizes = std::exchange(most_pixels, request.most_pixels) != request.most_pixels;
     const bool other_sides = std::exchange(front_only, request.front_only) != request.front_only;
     if (!request.accumulate || !presentation.averaged() || other_sizes || other_sides) presentation.restart();

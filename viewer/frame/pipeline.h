@@ -58,11 +58,13 @@ struct FrameRequest {
     /// (gi::Frame::light_budget).
     gi::StepBudget light_budget{};
     double exposure_seconds = 0;  ///< time in which automatic exposure follows by 63 %; 0: at once
-    /// Lets the default engine draw in the place of one that takes long, and leaves a compared engine out
+    /// Lets gi::stand_in_engine() draw in the place of one that takes long, and leaves a compared engine out
     /// that does.
     bool stand_in = false;
-    bool stand_in_early = false;  ///< likewise, as long as nodes are on their way
-    bool colours_only = false;    ///< shows the points' colours without light: the fastest picture
+    /// Likewise, as long as nodes are on their way, and for an engine that computes in advance until it has
+    /// anything to show.
+    bool stand_in_early = false;
+    bool colours_only = false;  ///< shows the points' colours without light: the fastest picture
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
     Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
 };

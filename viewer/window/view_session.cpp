@@ -455,18 +455,20 @@ void ViewSession::send_request() {
     request.frame.front_only = looks_in_from_outside(model_.view.site, request.frame.camera);
     request.frame.size = scaled_size(window_.framebuffer(), model_.view.resolution_scale);
     // Averages of a sketch would take the processors from the conversion that replaces it.
-    request.frame.accumulate = !request.moving && !std::ranges::any_of(scans_.rows(), grows);
+    const bool sketch = std::ranges::any_of(scans_.rows(), grows);
+    request.frame.accumulate = !request.moving && !sketch;
     if (shot_) request.pictures = shot_->pictures;
     // No engine stands in for the one that makes the new light.
     relit_ = relit_ && !request.moving;
     request.frame.complete = relit_;
-    request.small = relit_ && !relit_seen_ && !shot_ && is_slow(request.method.engine);
+    request.small = relit_ && !relit_seen_ && !shot_ && !sketch && is_slow(request.method.engine);
     if (request.small) {
         request.frame.size = scaled_size(window_.framebuffer(), kQuickScale * model_.view.resolution_scale);
         request.pictures = 1;
     }
     request.frame.moving = request.moving;
-    request.frame.stand_in = request.moving;
+    // While a scan grows, slow light would be that of a sketch, and take the processors from its conversion.
+    request.frame.stand_in = request.moving || sketch;
     // Something is seen at once, and light follows.
     request.frame.colours_only =
         !model_.view.picture && !gi::engine_is(request.method.engine, &gi::EngineInfo::unlit);

@@ -109,7 +109,7 @@ TEST_F(PipelineTest, SaysWhichEnginesDrewThePictureAndLeavesASlowComparedOneOutO
     EXPECT_EQ(stats.compared_with, "");
     EXPECT_EQ(passes(stats), 0);
     request_.wait = false;  // else nothing is loaded for an engine that stands in
-    EXPECT_EQ(frame("reference").lit_by, gi::default_engine().name);
+    EXPECT_EQ(frame("reference").lit_by, gi::stand_in_engine().name);
     request_.wait = true;
     request_.moving = request_.stand_in = false;
     EXPECT_EQ(frame("unlit").compared_with, "reference");
@@ -159,7 +159,7 @@ TEST_F(PipelineTest, ASlowEngineDrawsTheMotionItselfAsLongAsItKeepsTheLight) {
     Method method;
     method.engine = "environment";
     ASSERT_TRUE(pipeline_->set_method(method));
-    EXPECT_EQ(drawn(true).lit_by, gi::default_engine().name) << "there is no light yet";
+    EXPECT_EQ(drawn(true).lit_by, gi::stand_in_engine().name) << "there is no light yet";
     EXPECT_EQ(drawn(false).lit_by, "environment");
     request_.camera.target += glm::dvec3(0.02, 0, 0);
     const FrameStats moved = drawn(true);
@@ -168,10 +168,19 @@ TEST_F(PipelineTest, ASlowEngineDrawsTheMotionItselfAsLongAsItKeepsTheLight) {
     gi::Scene scene = pipeline_->scene();
     scene.lights[0].position.x += 0.1;
     ASSERT_TRUE(pipeline_->set_scene(scene));
-    EXPECT_EQ(drawn(true).lit_by, gi::default_engine().name) << "other light";
+    EXPECT_EQ(drawn(true).lit_by, gi::stand_in_engine().name) << "other light";
 }
 
-TEST_F(PipelineTest, TheDefaultEngineDrawsUntilAllNodesAreThere) {
+TEST_F(PipelineTest, TheStandInDrawsUntilSomethingIsComputedInAdvance) {
+    request_.wait = false;
+    request_.stand_in_early = request_.complete = true;
+    FrameStats stats = frame("paths");
+    EXPECT_EQ(stats.lit_by, gi::stand_in_engine().name);
+    while (stats.lit_by != "paths") stats = frame("paths");
+    EXPECT_TRUE(stats.prepared);
+}
+
+TEST_F(PipelineTest, TheStandInDrawsUntilAllNodesAreThere) {
     request_.wait = false;
     request_.stand_in_early = true;
     const auto is_traced = [](const FrameStats& stats) {
