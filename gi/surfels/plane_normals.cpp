@@ -28,9 +28,13 @@ constexpr double kThickness = 0.25;
 /// Cubes with more surfels than this are divided without a look at them.
 constexpr size_t kMany = 16384;
 
-bool lacks_normal(const FlatSurfel& s) {
-    return s.radius > 0 && std::isfinite(s.radius) && (s.albedo & kSurfelHasNormal) == 0 &&
-           std::isfinite(s.x) && std::isfinite(s.y) && std::isfinite(s.z);
+/// Surfels without a normal are more than this share of a scan whose normals are not known yet. Fewer lie on
+/// no surface.
+constexpr double kUnknown = 0.05;
+
+bool has_place(const FlatSurfel& s) {
+    return s.radius > 0 && std::isfinite(s.radius) && std::isfinite(s.x) && std::isfinite(s.y) &&
+           std::isfinite(s.z);
 }
 
 glm::dvec3 place_of(const FlatSurfel& s) {
@@ -108,13 +112,16 @@ class Planes {
 bool add_plane_normals(std::span<FlatSurfel> surfels) {
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
     std::vector<CodeIndex> order;
+    size_t all = 0;
     for (size_t i = 0; i < surfels.size(); ++i) {
-        if (!lacks_normal(surfels[i])) continue;
+        if (!has_place(surfels[i])) continue;
+        ++all;
+        if (surfels[i].albedo & kSurfelHasNormal) continue;
         low = glm::min(low, place_of(surfels[i]));
         high = glm::max(high, place_of(surfels[i]));
         order.push_back({0, static_cast<uint32_t>(i)});
     }
-    if (order.empty()) return false;
+    if (static_cast<double>(order.size()) <= kUnknown * static_cast<double>(all)) return false;
     const glm::dvec3 extent = high - low;
     // No surfel lies at the end of the cube.
     const octree::Cube cube{low, 1.001 * std::max({extent.x, extent.y, extent.z, 1e-6})};

@@ -7,9 +7,10 @@
 namespace lucarne::gi {
 
 /// Gives surfels without a normal that of the surface about them; which of its sides is the front is chance.
-/// The cloud is divided like an octree until what a cube holds lies in a plane, or is few: then the
-/// least-squares plane is that of all surfels in it. Returns whether there were any. The same surfels give
-/// the same normals, whatever the number of threads.
+/// Does nothing if nearly all have one: the others lie on no surface then. The cloud is divided like an
+/// octree until what a cube holds lies in a plane, or is few: then the least-squares plane is that of all
+/// surfels in it. Returns whether it gave any. The same surfels give the same normals, whatever the number of
+/// threads.
 bool add_plane_normals(std::span<FlatSurfel> surfels);
 
 }  // namespace lucarne::gi

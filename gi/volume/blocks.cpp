@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -138,6 +139,34 @@ uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell) {
     for_each_voxel_of(glm::ivec3(kBlocksAlong), scaled, kTouchingBlocks,
                       [&](const glm::ivec3& block, const Polygon&) { touched |= block_bit(block); });
     return touched;
+}
+
+uint64_t blocks_in_box(const glm::vec3& low, const glm::vec3& high) {
+    const auto layer = [](float place) {
+        return static_cast<int>(std::clamp(std::floor(place), 0.0f, float{kBlocksAlong - 1}));
+    };
+    uint64_t found = kAllBlocks;
+    constexpr uint64_t kRepeated[] = {0x1111111111111111u, 0x0001000100010001u, 1};
+    for (int axis = 0; axis < 3; ++axis) {
+        const int first = layer(low[axis] - kTouchingBlocks), last = layer(high[axis] + kTouchingBlocks);
+        const int bits = 1 << (2 * axis);  // of a layer in each repetition
+        const uint64_t ones = kAllBlocks >> (64 - bits * (last - first + 1));
+        found &= (ones << (bits * first)) * kRepeated[axis];
+    }
+    return found;
+}
+
+uint64_t blocks_near_plane(uint64_t blocks, const glm::vec3& normal, const glm::vec3& place) {
+    const glm::vec3 off = glm::abs(normal);
+    const float reach = (0.5f + 2 * kTouchingBlocks) * (off.x + off.y + off.z);
+    uint64_t found = 0;
+    for (uint64_t left = blocks; left != 0; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        const glm::vec3 middle(static_cast<float>(bit % 4) + 0.5f, static_cast<float>(bit / 4 % 4) + 0.5f,
+                               static_cast<float>(bit / 16) + 0.5f);
+        if (std::abs(glm::dot(normal, middle - place)) <= reach) found |= left & (~left + 1);
+    }
+    return found;
 }
 
 int gap_between(float radius, float area) {

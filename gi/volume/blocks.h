@@ -21,6 +21,13 @@ inline uint64_t block_bit(const glm::ivec3& block) {
 /// Returns the blocks that a part of a disc touches. `part`: in units of voxels, in the voxel at `cell`.
 uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell);
 
+/// Returns blocks of which those that a part of a disc touches are a few: all in the box about it. `low`,
+/// `high`: of the box, in units of blocks of its voxel.
+uint64_t blocks_in_box(const glm::vec3& low, const glm::vec3& high);
+
+/// Returns those of some blocks that a plane may touch. `place`: in the plane, in units of blocks.
+uint64_t blocks_near_plane(uint64_t blocks, const glm::vec3& normal, const glm::vec3& place);
+
 /// Returns how many blocks wide gaps between discs may be: 1 (none), or up to kWidestGap, or more if voxels
 /// are too small to tell gaps from openings. `radius`, `area`: of each disc and of its share of the surface,
 /// in voxels.

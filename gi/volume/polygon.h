@@ -44,11 +44,17 @@ BasicPolygon<T> cut(const BasicPolygon<T>& polygon, int axis, T sign, T low) {
     return kept;
 }
 
-/// Sets the first and the last of `most` layers along an axis that a polygon touches; the last is below the
-/// first if it touches none. Layers count as touched by what is nearer than `touching`, in voxels. Returns
-/// whether all of the polygon lies in the layers.
+/// How far a polygon reaches along an axis, and the layers that it touches there.
 template <class T>
-bool layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching, int& first, int& last) {
+struct Layers {
+    T low, high;
+    int first, last;  ///< none: the last is below the first
+};
+
+/// Returns which of `most` layers along an axis a polygon touches. Layers count as touched by what is nearer
+/// than `touching`, in voxels.
+template <class T>
+Layers<T> layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching) {
     T low = polygon.corners[0][axis], high = low;
     for (size_t i = 1; i < polygon.count; ++i) {
         low = std::min(low, polygon.corners[i][axis]);
@@ -56,9 +62,8 @@ bool layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching, i
     }
     // Comparisons as floats: a hostile polygon may lie beyond the range of int.
     const auto end = static_cast<T>(most);
-    first = static_cast<int>(std::clamp(std::floor(low - touching), T(0), end));
-    last = static_cast<int>(std::clamp(std::floor(high + touching), T(-1), end - 1));
-    return low >= -touching && high <= end + touching;
+    return {low, high, static_cast<int>(std::clamp(std::floor(low - touching), T(0), end)),
+            static_cast<int>(std::clamp(std::floor(high + touching), T(-1), end - 1))};
 }
 
 /// Calls body(cell, part) for every voxel of a grid of this size that a polygon touches, with the part of the
@@ -72,17 +77,20 @@ void for_each_voxel_of(const glm::ivec3& size, const BasicPolygon<T>& polygon, T
         body(cell, polygon);
         return;
     }
-    int first = 0, last = 0;
-    const bool inside = layers_of(polygon, axis, size[axis], touching, first, last);
-    for (int i = first; i <= last; ++i) {
+    const Layers<T> layers = layers_of(polygon, axis, size[axis], touching);
+    for (int i = layers.first; i <= layers.last; ++i) {
         cell[axis] = i;
-        if (first == last && inside)
+        const T low = static_cast<T>(i) - touching, high = static_cast<T>(i + 1) + touching;
+        const bool below = layers.low<low, above = layers.high> high;
+        if (!below && !above)
             for_each_voxel_of(size, polygon, touching, body, axis + 1, cell);
+        else if (!above)
+            for_each_voxel_of(size, cut(polygon, axis, T(1), low), touching, body, axis + 1, cell);
+        else if (!below)
+            for_each_voxel_of(size, cut(polygon, axis, T(-1), -high), touching, body, axis + 1, cell);
         else
-            for_each_voxel_of(size,
-                              cut(cut(polygon, axis, T(1), static_cast<T>(i) - touching), axis, T(-1),
-                                  -static_cast<T>(i + 1) - touching),
-                              touching, body, axis + 1, cell);
+            for_each_voxel_of(size, cut(cut(polygon, axis, T(1), low), axis, T(-1), -high), touching, body,
+                              axis + 1, cell);
     }
 }
 

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/vector_relational.hpp>
 
 #include "gi/shared/brdf.h"
@@ -19,11 +21,13 @@ namespace lucarne::gi::volume {
 namespace {
 
 constexpr size_t kSurfelsAPiece = 16384, kSurfelsAtOnce = 8 * kSurfelsAPiece;
-/// How many parts there may be, of 24 bytes each while they are made: some, and so many a surfel. A disc of a
+/// How many parts there may be, of 12 bytes each while they are made: some, and so many a surfel. A disc of a
 /// scan touches two voxels on the average.
 constexpr size_t kSomeParts = size_t{1} << 22, kPartsASurfel = 8;
 /// Of a disc, in voxels: those of a broken file would touch every voxel of the grid, one after the other.
 constexpr float kLargestRadius = 1024;
+/// Of the octagon about a disc, in its radii (1 / cos 22.5 degrees), and a little more.
+constexpr float kCorners = 1.0825f;
 constexpr size_t kGapsATask = 256;
 
 }  // namespace
@@ -58,9 +62,34 @@ VoxelMaker::VoxelMaker(std::span<const FlatSurfel> surfels, const Grid& grid)
     : surfels_(surfels),
       grid_(grid),
       pieces_((surfels.size() + kSurfelsAPiece - 1) / kSurfelsAPiece),
+      blocks_(grid.cells(), 0),
+      gaps_(grid.cells(), 0),
       most_(kSomeParts + kPartsASurfel * surfels.size()) {}
 
-void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) const {
+/// Marks the blocks of a cell that a part of a disc touches. Most are marked already, by the discs about it:
+/// only where blocks near the part are missing does it ask for the polygon of the part. `low`, `high`: of the
+/// part, in units of voxels.
+template <class Part>
+void VoxelMaker::mark(const Disc& disc, const glm::ivec3& cell, const glm::vec3& low, const glm::vec3& high,
+                      const Part& part) {
+    const uint32_t number = grid_.number(cell);
+    const std::atomic_ref<uint8_t> gap(gaps_[number]);
+    uint8_t widest = gap.load(std::memory_order_relaxed);
+    while (widest < disc.gap && !gap.compare_exchange_weak(widest, disc.gap, std::memory_order_relaxed)) {
+    }
+    const std::atomic_ref<uint64_t> marked(blocks_[number]);
+    const glm::vec3 corner(cell);
+    constexpr auto kAlong = static_cast<float>(kBlocksAlong);
+    uint64_t missing = ~marked.load(std::memory_order_relaxed);
+    if (disc.gap <= kWidestGap) {
+        missing &= blocks_in_box(kAlong * (low - corner), kAlong * (high - corner));
+        missing = blocks_near_plane(missing, disc.normal, kAlong * (disc.place - corner));
+    }
+    if (missing == 0) return;
+    marked.fetch_or(disc.gap > kWidestGap ? kAllBlocks : blocks_of(part(), cell), std::memory_order_relaxed);
+}
+
+void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) {
     const FlatSurfel& surfel = surfels_[number];
     const float radius = std::min(surfel.radius, kLargestRadius * grid_.voxel);
     const glm::vec3 middle(surfel.x, surfel.y, surfel.z), place = grid_.place(middle);
@@ -72,17 +101,32 @@ void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) const
                     glm::any(glm::greaterThan(place, size + reach))))
         return;
     const glm::vec3 normal = decode_octahedral(surfel.normal);
-    const size_t first = target.size();
     const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
-    const int gap = gap_between(radius / grid_.voxel, whole / (grid_.voxel * grid_.voxel));
+    const Disc disc{
+        place, normal,
+        static_cast<uint8_t>(gap_between(radius / grid_.voxel, whole / (grid_.voxel * grid_.voxel)))};
+    // Most discs lie in one voxel as a whole.
+    const glm::vec3 extent =
+        kCorners * radius / grid_.voxel * glm::sqrt(glm::max(1.0f - normal * normal, 0.0f)) + 2 * kTouching;
+    const glm::vec3 low = place - extent, high = place + extent;
+    if (inside && glm::floor(low) == glm::floor(high)) {
+        const glm::ivec3 cell(glm::floor(low));
+        target.push_back({grid_.number(cell), {number, whole}});
+        mark(disc, cell, low, high, [&] { return octagon_about(grid_, middle, normal, radius); });
+        return;
+    }
+    const size_t first = target.size();
     float sum = 0;
     for_each_voxel(grid_, middle, normal, radius, [&](const glm::ivec3& cell, const Polygon& part) {
         const float area = part.area();
         sum += area;
-        target.push_back({grid_.number(cell),
-                          {number, area},
-                          static_cast<uint8_t>(gap),
-                          gap > kWidestGap ? kAllBlocks : blocks_of(part, cell)});
+        target.push_back({grid_.number(cell), {number, area}});
+        glm::vec3 least = part.corners[0], most = least;
+        for (size_t i = 1; i < part.count; ++i) {
+            least = glm::min(least, part.corners[i]);
+            most = glm::max(most, part.corners[i]);
+        }
+        mark(disc, cell, least, most, [&] { return part; });
     });
     if (grid_.part && !inside) sum = std::max(sum, octagon_about(grid_, middle, normal, radius).area());
     for (size_t i = first; i < target.size(); ++i)
@@ -129,15 +173,16 @@ Voxels VoxelMaker::finish() {
         voxels.starts_.push_back(voxels.starts_.back() + counts[cell]);
     }
     voxels.parts_.resize(voxels.starts_.back());
-    voxels.blocks_.resize(voxels.occupied_.size());
-    std::vector<uint8_t> gaps(voxels.occupied_.size(), 0);
+    std::vector<uint8_t> gaps;
+    for (const uint32_t cell : voxels.occupied_) {
+        voxels.blocks_.push_back(blocks_[cell]);
+        gaps.push_back(gaps_[cell]);
+    }
     std::vector<size_t> next(voxels.starts_.begin(), voxels.starts_.end() - 1);
     for (auto& piece : pieces_) {
         for (const CellPart& part : piece) {
             const uint32_t voxel = voxels.numbers_[part.cell];
             voxels.parts_[next[voxel]++] = part.part;
-            voxels.blocks_[voxel] |= part.blocks;
-            gaps[voxel] = std::max(gaps[voxel], part.gap);
         }
         piece = {};
     }

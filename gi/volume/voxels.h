@@ -79,15 +79,24 @@ class VoxelMaker {
     struct CellPart {
         uint32_t cell;
         SurfelPart part;
-        uint8_t gap;
-        uint64_t blocks;
     };
-    void add_parts(uint32_t surfel, std::vector<CellPart>& target) const;
+    /// A disc in units of voxels.
+    struct Disc {
+        glm::vec3 place, normal;
+        uint8_t gap;  ///< gap_between() of discs like this
+    };
+    void add_parts(uint32_t surfel, std::vector<CellPart>& target);
+    template <class Part>
+    void mark(const Disc& disc, const glm::ivec3& cell, const glm::vec3& low, const glm::vec3& high,
+              const Part& part);
 
     std::span<const FlatSurfel> surfels_;
     Grid grid_;
     std::vector<std::vector<CellPart>> pieces_;  ///< of so many surfels each
-    size_t most_;                                ///< parts
+    // Atomically: several threads find parts in one cell.
+    std::vector<uint64_t> blocks_;  ///< by cell: those that discs touch
+    std::vector<uint8_t> gaps_;     ///< by cell: of its largest disc
+    size_t most_;                   ///< parts
     std::atomic<size_t> parts_{0};
     size_t done_ = 0;  ///< surfels
 };

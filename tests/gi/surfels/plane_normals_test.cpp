@@ -57,6 +57,17 @@ TEST(PlaneNormals, KnownNormalsAndWhatHasNoDiscStay) {
     EXPECT_FALSE(add_plane_normals({}));
 }
 
+TEST(PlaneNormals, AFewPointsWithoutOneLieOnNoSurface) {
+    std::vector<FlatSurfel> surfels;
+    for (int i = 0; i < 100; ++i) {
+        surfels.push_back(bare({0.01f * static_cast<float>(i), 0, 0}, 0.1f));
+        if (i % 50 != 0) surfels.back().albedo |= kSurfelHasNormal;
+    }
+    EXPECT_FALSE(add_plane_normals(surfels));
+    for (FlatSurfel& s : surfels) s.albedo &= ~kSurfelHasNormal;
+    EXPECT_TRUE(add_plane_normals(surfels));
+}
+
 TEST(PlaneNormals, OfClumpsAndDistantPointsAreUnitVectors) {
     std::vector<FlatSurfel> surfels(50000, bare({5, 5, 5}, 0.1f));
     for (int i = 0; i < 100; ++i) surfels.push_back(bare({1e7f, static_cast<float>(i), 0}, 0.1f));
