@@ -2,6 +2,7 @@
 
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/surfel_light.h"
+#include "gi/native/reflectance.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/lobe.h"
 #include "gi/shared/surfel_code.h"
@@ -72,12 +73,15 @@ void LitSurfels::end_light(const Frame& frame) {
         lobes_.directions = directions_.download_all<SideLight>(count);
     }
     const std::vector<Material> materials = device_materials(frame.materials);
+    const auto& linear = native::linear_albedos();
     parallel_ranges(count, kLitAtOnce, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const FlatSurfel& surfel = surfels_[i];
             if (!(surfel.radius > 0)) continue;
             const Material& material = materials[surfel.material % materials.size()];
-            const Reflectance r = make_reflectance(material, decode_albedo(surfel.albedo));
+            const Reflectance r = make_reflectance(
+                material, {linear[surfel.albedo & 1023u], linear[surfel.albedo >> 10 & 1023u],
+                           linear[surfel.albedo >> 20 & 1023u]});
             reflectances_[i] = (r.kd + r.ks) / kPi;
             if (apart_) set_lobes(i, r);
             const glm::vec3 emission(material.emission);

@@ -1,7 +1,9 @@
 #include "gi/volume/faces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -95,12 +97,50 @@ Owners find_owners(const Voxels& voxels, const Faces& faces) {
     return found;
 }
 
+/// The parts of surfels in each voxel, grouped by the axis that their normals are nearest to: a face reads
+/// those of one axis. Within a group they are sorted by surfel.
+class PartsByAxis {
+ public:
+    /// `normals`: of the surfels, decoded.
+    PartsByAxis(const Voxels& voxels, std::span<const glm::vec3> normals)
+        : parts_(voxels.all_parts()), starts_(voxels.occupied().size()) {
+        if (starts_.empty()) return;
+        const SurfelPart* const all = voxels.parts(0).data();
+        parallel_ranges(starts_.size(), kVoxelsATask, [&](size_t first, size_t last) {
+            std::array<std::vector<SurfelPart>, 3> groups;
+            for (size_t voxel = first; voxel < last; ++voxel) {
+                const auto own = voxels.parts(static_cast<uint32_t>(voxel));
+                for (const SurfelPart& part : own)
+                    groups[static_cast<size_t>(largest_axis(normals[part.surfel]))].push_back(part);
+                auto at = static_cast<size_t>(own.data() - all);
+                for (size_t axis = 0; axis < 3; ++axis) {
+                    starts_[voxel][axis] = at;
+                    std::ranges::copy(groups[axis], parts_.begin() + static_cast<ptrdiff_t>(at));
+                    at += groups[axis].size();
+                    groups[axis].clear();
+                }
+                starts_[voxel][3] = at;
+            }
+        });
+    }
+    std::span<const SurfelPart> of(uint32_t voxel, int axis) const {
+        const auto& starts = starts_[voxel];
+        const auto group = static_cast<size_t>(axis);
+        return std::span(parts_).subspan(starts[group], starts[group + 1] - starts[group]);
+    }
+
+ private:
+    std::vector<SurfelPart> parts_;
+    std::vector<std::array<size_t, 4>> starts_;  ///< by voxel and axis; and the end
+};
+
 /// Finds what faces show.
 class Finder {
  public:
     /// `normals`: of the surfels, decoded.
-    Finder(const Voxels& voxels, std::span<const FlatSurfel> surfels, std::span<const glm::vec3> normals)
-        : voxels_(voxels), surfels_(surfels), normals_(normals) {}
+    Finder(const Voxels& voxels, const PartsByAxis& parts, std::span<const FlatSurfel> surfels,
+           std::span<const glm::vec3> normals)
+        : voxels_(voxels), parts_(parts), surfels_(surfels), normals_(normals) {}
 
     /// Sets what a face shows; `owned`: the voxels that it stands for.
     void set_face(Face& face, std::span<const Owned> owned, std::vector<Faces::Shown>& shown) {
@@ -134,10 +174,9 @@ class Finder {
         candidates_.clear();
         for (const auto& [voxel, beside] : owned) {
             const glm::ivec3 cell = voxels_.grid().cell(voxels_.occupied()[voxel]);
-            for (const SurfelPart& part : voxels_.parts(voxel)) {
+            const int axis = axis_of(side);
+            for (const SurfelPart& part : parts_.of(voxel, axis)) {
                 const glm::vec3& normal = normals_[part.surfel];
-                const int axis = largest_axis(normal);
-                if (axis != axis_of(side)) continue;
                 add(part, cell, normal, side_of(axis, normal[axis]) != side, 1);
                 candidates_.back().beside = beside;
             }
@@ -200,6 +239,7 @@ class Finder {
     }
 
     const Voxels& voxels_;
+    const PartsByAxis& parts_;
     std::span<const FlatSurfel> surfels_;
     std::span<const glm::vec3> normals_;
     std::vector<Candidate> candidates_;
@@ -237,12 +277,13 @@ struct FaceMaker::State {
     Faces faces;
     Owners owners;
     std::vector<glm::vec3> normals;  ///< of the surfels, decoded
-    std::vector<Piece> pieces;       ///< of so many faces each
-    size_t done = 0;                 ///< faces
+    std::optional<PartsByAxis> parts;
+    std::vector<Piece> pieces;  ///< of so many faces each
+    size_t done = 0;            ///< faces
 };
 
 FaceMaker::FaceMaker(const Voxels& voxels, std::span<const FlatSurfel> surfels)
-    : state_(new State{voxels, surfels, {}, {}, {}, {}}) {
+    : state_(new State{voxels, surfels, {}, {}, {}, {}, {}}) {
     State& s = *state_;
     s.faces.number(voxels);
     s.owners = find_owners(voxels, s.faces);
@@ -250,6 +291,7 @@ FaceMaker::FaceMaker(const Voxels& voxels, std::span<const FlatSurfel> surfels)
     parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) s.normals[i] = decode_octahedral(surfels[i].normal);
     });
+    s.parts.emplace(voxels, s.normals);
     s.pieces.resize((s.faces.faces_.size() + kFacesATask - 1) / kFacesATask);
 }
 
@@ -259,7 +301,7 @@ bool FaceMaker::advance() {
     State& s = *state_;
     const size_t count = s.faces.faces_.size(), end = std::min(count, s.done + kFacesAtOnce);
     parallel_ranges(end - s.done, kFacesATask, [&](size_t first, size_t last) {
-        Finder finder(s.voxels, s.surfels, s.normals);
+        Finder finder(s.voxels, *s.parts, s.surfels, s.normals);
         State::Piece& piece = s.pieces[(s.done + first) / kFacesATask];
         for (size_t i = s.done + first; i < s.done + last; ++i) {
             const size_t begin = s.owners.starts[i], after = s.owners.starts[i + 1];

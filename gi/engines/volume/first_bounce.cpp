@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -18,13 +19,6 @@ namespace lucarne::gi::volume {
 namespace {
 
 constexpr size_t kReceiversAtOnce = 8192, kReceiversATask = 128;
-/// A cluster is small enough if its radius is at most this share of its distance.
-constexpr float kOpening = 0.3f;
-/// Length of the mean normal of a cluster that may stand for its faces: their normals lie within some 25
-/// degrees of it.
-constexpr float kOneDirection = 0.9f;
-/// Faces nearer than so many times their side have the form factor of a square, others that of a point.
-constexpr float kNearby = 4;
 /// How many lines of sight there are from each face.
 constexpr float kLinesOfSight = 48;
 /// What reaches less far above a plane lies in it, in voxels.
@@ -95,6 +89,9 @@ FirstBounce::FirstBounce(const Space& space) : space_(space), places_(space.face
     parallel_ranges(places_.size(), kReceiversATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) places_[i] = place_before(space, space.faces.all()[i]);
     });
+    order_.resize(places_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::ranges::stable_sort(order_, {}, [&](uint32_t face) { return space.faces.all()[face].side; });
 }
 
 void FirstBounce::begin(std::span<const glm::vec3> radiance, const Grid* inner) {
@@ -150,6 +147,7 @@ void FirstBounce::add_cluster(std::span<const glm::vec3> radiance, std::span<uin
         if (away >= nearest) continue;
         nearest = away;
         cluster.face = i;
+        cluster.voxel = all[i].voxel;
     }
     clusters_.push_back(cluster);
     if (faces.size() == 1) return;
@@ -180,71 +178,25 @@ size_t FirstBounce::divide(std::span<uint32_t> faces) const {
     return half;
 }
 
-/// Returns how far the box of a cluster reaches from a position along a direction, m.
-float FirstBounce::farthest(const Cluster& cluster, const glm::vec3& position, const glm::vec3& along) {
-    const glm::vec3 low = cluster.low - position, high = cluster.high - position;
-    return std::max(low.x * along.x, high.x * along.x) + std::max(low.y * along.y, high.y * along.y) +
-           std::max(low.z * along.z, high.z * along.z);
-}
-
-/// Returns the irradiance, W/m^2, of a surface with the unit `normal` by a square with the unit normal
-/// `square_normal`, for each W/sr that it would send out along its normal. `way`: from the surface to the
-/// middle of the square, m. The kernel is expanded to second order about the middle: its mean over a square
-/// is its value plus area / 24 times its Laplacian in the plane of the square.
-float factor_of_small(const glm::vec3& normal, const glm::vec3& way, const glm::vec3& square_normal,
-                      float area) {
-    const float above = glm::dot(way, normal), facing = -glm::dot(way, square_normal);
-    if (!(above > 0 && facing > 0)) return 0;
-    const float distance2 = glm::dot(way, way);
-    const glm::vec3 along = way + facing * square_normal;  // in the plane of the square
-    const float laplacian = (16 * glm::dot(along, along) - 8 * facing * facing) / (distance2 * distance2) -
-                            8 * glm::dot(normal, along) / (distance2 * above);
-    return above * facing / (distance2 * distance2) * std::clamp(1 + area / 24 * laplacian, 0.0f, 2.0f);
-}
-
-/// Sets which of these clusters light a face if nothing is in between, in the order of the trees.
-void FirstBounce::look(const Face& face, size_t first, size_t last, std::vector<Ray>& rays) const {
-    rays.clear();
-    const float in_plane = kInPlane * space_.grid().voxel;
-    for (size_t i = first; i < last;) {
-        const Cluster& cluster = clusters_[i];
-        const size_t next = i + 2 * size_t{cluster.faces} - 1;  // beyond all of its clusters
-        const glm::vec3 way = cluster.middle - face.position;
-        const float distance2 = glm::dot(way, way);
-        const bool one = cluster.faces == 1;
-        const float length2 = glm::dot(cluster.normal, cluster.normal);
-        const bool small = cluster.radius * cluster.radius < kOpening * kOpening * distance2 &&
-                           length2 > kOneDirection * kOneDirection;
-        if (!one && !small) {
-            // All of it may be below the horizon, or face away.
-            const float spread = std::sqrt(std::max(1 - length2, 0.0f) * distance2);
-            const bool hidden = farthest(cluster, face.position, face.normal) < in_plane ||
-                                farthest(cluster, face.position, -cluster.normal) + spread < in_plane;
-            i = hidden ? next : i + 1;
-            continue;
-        }
-        i = next;
-        if (glm::dot(way, face.normal) < -cluster.radius || glm::dot(way, cluster.normal) > cluster.radius)
-            continue;
-        // Surfaces in one voxel are too near to each other for its resolution.
-        if (one && space_.faces.all()[cluster.face].voxel == face.voxel) continue;
-        float factor = 0;
-        if (one && distance2 < kNearby * kNearby * cluster.area) {
-            factor = form_factor(face.position, face.normal, cluster.middle, cluster.normal, cluster.area) *
-                     kPi / cluster.area;
-        } else {
-            factor = factor_of_small(face.normal, way, cluster.normal / std::sqrt(length2), cluster.area);
-        }
-        const glm::vec3 light = factor * cluster.power;
-        if (factor > 0) rays.push_back({light, luminance(light), cluster.face});
-    }
+/// Computes the light of the rays from nearby faces, and drops those that bring none.
+void FirstBounce::finish_nearby(const Receiver& face, Rays& rays) const {
+    std::erase_if(rays, [&](Ray& ray) {
+        if (ray.luminance != Ray::kNearby) return false;
+        const Cluster& cluster = clusters_[ray.cluster];
+        const float factor =
+            form_factor(face.position, face.normal, cluster.middle, cluster.normal, cluster.area) * kPi /
+            cluster.area;
+        ray.light = factor * cluster.power;
+        ray.luminance = luminance(ray.light);
+        return !(factor > 0);
+    });
 }
 
 /// Returns what a face sees of the rays that have more than their share of the light, and drops them: each
 /// is decided by a line of sight of its own, so that no other decides for it. Where most of the light turns
 /// out to be hidden, shares of the rest become smaller. Sets `share` to the last one, which no ray that is
 /// left exceeds.
-glm::vec3 FirstBounce::take_brightest(uint32_t number, std::vector<Ray>& rays, float& share) const {
+glm::vec3 FirstBounce::take_brightest(uint32_t number, Rays& rays, float& share) const {
     float whole = 0, hidden = 0;
     glm::vec3 sum(0.0f);
     do {
@@ -253,7 +205,7 @@ glm::vec3 FirstBounce::take_brightest(uint32_t number, std::vector<Ray>& rays, f
         share = whole / kLinesOfSight;
         std::erase_if(rays, [&](const Ray& ray) {
             if (!(ray.luminance > share)) return false;
-            if (space_.air.sees(places_[number], places_[ray.face]))
+            if (space_.air.sees(places_[number], places_[clusters_[ray.cluster].face]))
                 sum += ray.light;
             else
                 hidden += ray.luminance;
@@ -266,8 +218,7 @@ glm::vec3 FirstBounce::take_brightest(uint32_t number, std::vector<Ray>& rays, f
 /// Returns the irradiance of a face by these clusters. Those that are not alone are divided into groups of
 /// about equal light, neighbours together, and one line of sight decides for each group: where all of it is
 /// seen the sum is exact.
-glm::vec3 FirstBounce::gather(uint32_t number, size_t first, size_t last, std::vector<Ray>& rays) const {
-    look(space_.faces.all()[number], first, last, rays);
+glm::vec3 FirstBounce::gather(uint32_t number, Rays& rays) const {
     float group = 0, gathered = 0;  // luminance of a group, and of the present one so far
     glm::vec3 sum = take_brightest(number, rays, group), light(0.0f);
     uint32_t seen = Faces::kNone;
@@ -281,10 +232,10 @@ glm::vec3 FirstBounce::gather(uint32_t number, size_t first, size_t last, std::v
         light += ray.light;
         gathered += ray.luminance;
         // The cluster in the middle of the group's light.
-        if (seen == Faces::kNone && gathered >= 0.5f * group) seen = ray.face;
+        if (seen == Faces::kNone && gathered >= 0.5f * group) seen = clusters_[ray.cluster].face;
         if (gathered >= group) finish();
     }
-    if (seen == Faces::kNone && !rays.empty()) seen = rays.back().face;
+    if (seen == Faces::kNone && !rays.empty()) seen = clusters_[rays.back().cluster].face;
     finish();
     return sum;
 }
@@ -293,12 +244,34 @@ bool FirstBounce::advance() {
     const size_t all = clusters_.empty() ? 0 : irradiance_.size();
     const size_t end = std::min(all, done_ + kReceiversAtOnce);
     parallel_ranges(end - std::min(done_, end), kReceiversATask, [&](size_t first, size_t last) {
-        std::vector<Ray> rays;
-        for (size_t i = done_ + first; i < done_ + last; ++i) {
-            const auto face = static_cast<uint32_t>(i);
-            const size_t before = apart_[i] != 0 ? outer_clusters_ : 0;
-            from_outside_[i] = gather(face, 0, before, rays);
-            irradiance_[i] = from_outside_[i] + gather(face, before, clusters_.size(), rays);
+        const auto faces = space_.faces.all();
+        const float in_plane = kInPlane * space_.grid().voxel;
+        std::array<Receiver, kReceiversTogether> receivers;
+        std::array<Rays, kReceiversTogether> outer, inner;
+        for (size_t begin = done_ + first; begin < done_ + last; begin += kReceiversTogether) {
+            const auto numbers =
+                std::span(order_).subspan(begin, std::min(kReceiversTogether, done_ + last - begin));
+            for (size_t i = 0; i < numbers.size(); ++i) {
+                const Face& face = faces[numbers[i]];
+                receivers[i] = {face.position, face.normal, face.voxel};
+                outer[i].clear();
+                inner[i].clear();
+            }
+            const auto together = std::span(receivers).first(numbers.size());
+            look(clusters_, 0, outer_clusters_, together, in_plane, outer);
+            look(clusters_, outer_clusters_, clusters_.size(), together, in_plane, inner);
+            for (size_t i = 0; i < numbers.size(); ++i) {
+                const uint32_t face = numbers[i];
+                finish_nearby(receivers[i], outer[i]);
+                finish_nearby(receivers[i], inner[i]);
+                if (apart_[face] != 0) {
+                    from_outside_[face] = gather(face, outer[i]);
+                    irradiance_[face] = from_outside_[face] + gather(face, inner[i]);
+                } else {
+                    outer[i].insert(outer[i].end(), inner[i].begin(), inner[i].end());
+                    irradiance_[face] = gather(face, outer[i]);
+                }
+            }
         }
     });
     done_ = end;

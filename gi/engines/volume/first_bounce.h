@@ -7,6 +7,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "gi/engines/volume/native/look.h"
 #include "gi/engines/volume/space.h"
 
 namespace lucarne::gi::volume {
@@ -30,30 +31,12 @@ class FirstBounce {
     std::span<const glm::vec3> from_outside() const { return from_outside_; }
 
  private:
-    /// A cluster of faces in preorder: its first child follows it, the second one after the first one's
-    /// clusters.
-    struct Cluster {
-        glm::vec3 middle{0.0f};           ///< weighted by flux, m
-        float radius = 0;                 ///< about the middle, of the sphere that holds all of its faces, m
-        glm::vec3 low{0.0f}, high{0.0f};  ///< the box of its faces, m
-        glm::vec3 normal{0.0f};           ///< mean, weighted by flux; shorter than 1 if normals differ
-        float area = 0;                   ///< m^2
-        glm::vec3 power{0.0f};            ///< sum of radiance * area, W/sr
-        uint32_t face = 0;                ///< the one nearest to the middle, to which lines of sight go
-        uint32_t faces = 0;
-    };
     void add_cluster(std::span<const glm::vec3> radiance, std::span<uint32_t> faces);
     size_t divide(std::span<uint32_t> faces) const;
-    static float farthest(const Cluster& cluster, const glm::vec3& position, const glm::vec3& along);
-    /// What a cluster sends to a face if nothing is in between.
-    struct Ray {
-        glm::vec3 light;  ///< W/m^2
-        float luminance;  ///< of the light
-        uint32_t face;    ///< to which the line of sight goes
-    };
-    void look(const Face& face, size_t first, size_t last, std::vector<Ray>& rays) const;
-    glm::vec3 take_brightest(uint32_t face, std::vector<Ray>& rays, float& share) const;
-    glm::vec3 gather(uint32_t face, size_t first, size_t last, std::vector<Ray>& rays) const;
+    using Rays = std::vector<Ray>;
+    void finish_nearby(const Receiver& face, Rays& rays) const;
+    glm::vec3 take_brightest(uint32_t face, Rays& rays, float& share) const;
+    glm::vec3 gather(uint32_t face, Rays& rays) const;
 
     const Space& space_;
     std::vector<glm::vec3> places_;  ///< by face: a place in the air before it, in units of voxels
@@ -62,7 +45,8 @@ class FirstBounce {
     size_t outer_clusters_ = 0;
     std::vector<uint8_t> apart_;  ///< by face: whether light from outside of the inner grid is kept apart
     std::vector<glm::vec3> irradiance_, from_outside_;
-    size_t done_ = 0;
+    std::vector<uint32_t> order_;  ///< faces by their sides: receivers that look the same way together
+    size_t done_ = 0;              ///< of the order
 };
 
 /// Returns the form factor from a small surface at `position` with the unit `normal` to a square with this

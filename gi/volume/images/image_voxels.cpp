@@ -1,7 +1,6 @@
 #include "gi/volume/images/image_voxels.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -9,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "gi/native/reflectance.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/volume/images/seen.h"
 #include "io/core/parallel.h"
@@ -29,13 +29,6 @@ glm::vec3 middle_of(const glm::ivec3& cell, float voxel) {
 int wrapped(int at, int size) {
     const int rest = at % size;
     return rest < 0 ? rest + size : rest;
-}
-
-/// Linear light of the 1024 codes of an albedo's channel.
-std::array<float, 1024> linear_codes() {
-    std::array<float, 1024> linear{};
-    for (size_t i = 0; i < linear.size(); ++i) linear[i] = srgb_to_linear(static_cast<float>(i) / 1023);
-    return linear;
 }
 
 constexpr uint32_t kColourBits = 0x3fffffffu;
@@ -142,7 +135,7 @@ void ImageVoxels::inject(std::span<const SeenImage> images, const ImageUpdate& h
 
 /// Adds the samples of a picture to the sums of their voxels.
 void ImageVoxels::inject(const SeenImage& image, uint32_t number, const ImageUpdate& how) {
-    static const std::array<float, 1024> kLinear = linear_codes();
+    const auto& linear = native::linear_albedos();
     const uint32_t longer = std::max(image.view.width, image.view.height);
     const uint32_t step = how.samples == 0 ? 1 : std::max(1u, longer / how.samples);
     const uint32_t across = (image.view.width + step - 1) / step,
@@ -191,8 +184,8 @@ void ImageVoxels::inject(const SeenImage& image, uint32_t number, const ImageUpd
         const size_t pixel = size_t{at.y} * image.view.width + at.x;
         const GBufferTexel& texel = image.texels[pixel];
         sums.normal += texel_normal(texel);
-        sums.albedo += glm::vec3(kLinear[texel.albedo & 1023u], kLinear[texel.albedo >> 10 & 1023u],
-                                 kLinear[texel.albedo >> 20 & 1023u]);
+        sums.albedo += glm::vec3(linear[texel.albedo & 1023u], linear[texel.albedo >> 10 & 1023u],
+                                 linear[texel.albedo >> 20 & 1023u]);
         sums.count += 1;
         sums.image_count += 1;
         if (!image.light.empty()) sums.image_light += image.light[pixel];
