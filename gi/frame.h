@@ -38,7 +38,8 @@ struct Frame {
     uint64_t index = 0;  ///< the frame's number since the view changed; averaging engines sample each anew
     std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
     Bounds bounds{};                                 ///< of the whole cloud, m
-    bool moving = false;  ///< the camera moves: an engine may use results of the frame before
+    glm::dvec3 origin{0.0};  ///< of all coordinates, in those of the file: another one makes them others
+    bool moving = false;     ///< the camera moves: an engine may use results of the frame before
     /// Changes with what is lit and what lights it; not with the camera, settings and levels of detail.
     uint64_t content = 0;
     /// How much of the light that outlasts a frame a moving frame makes. Unless it is `whole`, an engine

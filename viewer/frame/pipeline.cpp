@@ -301,6 +301,7 @@ Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& requ
                     .index = presentation.accumulated(),
                     .environment = scene.environment,
                     .bounds = {local.to_local(header.min), local.to_local(header.max)},
+                    .origin = local.origin,
                     .moving = request.moving || keeps_light,
                     .content = content,
                     .light_budget = keeps_light && request.light_budget.whole() ? gi::StepBudget::paused()

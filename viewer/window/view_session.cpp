@@ -112,6 +112,7 @@ void ViewSession::take_picture() {
         newest && !sent_.small && own_engine && latest->stats.nodes_pending == 0 && last_source;
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
     relit_seen_ |= newest;
+    lit_seen_ |= !latest->moving && !gi::engine_is(latest->stats.lit_by, &gi::EngineInfo::unlit);
     if (whole) help_in_the_dark(*latest);
 }
 
@@ -238,7 +239,7 @@ Result<void> ViewSession::change_project(const std::filesystem::path& file,
     else
         model_.missing_scans.shown = false;
     project_.use(file, std::move(scans.missing));
-    placed_ = sure_ = false;
+    placed_ = sure_ = lit_seen_ = false;
     model_.measure.stop();
     model_.measure.restore({}, model_.measure.metres_per_unit);
     LUCARNE_TRY(model_.publish.editor.restore({}));
@@ -469,9 +470,10 @@ void ViewSession::send_request() {
     request.frame.moving = request.moving;
     // While a scan grows, slow light would be that of a sketch, and take the processors from its conversion.
     request.frame.stand_in = request.moving || sketch;
-    // Something is seen at once, and light follows.
-    request.frame.colours_only =
-        !model_.view.picture && !gi::engine_is(request.method.engine, &gi::EngineInfo::unlit);
+    // Something is seen at once, and light follows. What a sketch shows in motion has no light before the
+    // first picture at rest, and would be black.
+    request.frame.colours_only = (!model_.view.picture || (sketch && request.moving && !lit_seen_)) &&
+                                 !gi::engine_is(request.method.engine, &gi::EngineInfo::unlit);
     request.frame.stand_in_early = true;
     if (request.moving) {
         const ImageSize size = quality_.size(request.frame.size);

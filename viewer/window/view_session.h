@@ -135,6 +135,7 @@ class ViewSession {
     uint64_t scene_seen_ = 0, replaced_seen_ = 0;
     bool relit_ = false;            ///< all light was replaced, and nothing has moved since
     bool relit_seen_ = false;       ///< a picture shows the new light
+    bool lit_seen_ = false;         ///< a picture at rest has shown the scans lit
     uint32_t whole_pictures_ = 0;   ///< complete pictures in the displayed average
     uint64_t looked_for_dark_ = 0;  ///< the last request whose picture was looked at
     bool is_dark_ = false;          ///< and whether that was dark

@@ -25,6 +25,7 @@ namespace lucarne::gi::volume {
 /// What the light in a volume is made from. Equal bases give equal light.
 struct Basis {
     SceneRevisions scene;
+    glm::dvec3 origin{0.0};  ///< Frame::origin
     LightCutRevisions cuts;
     std::vector<Light> lights;  ///< of the views: samples of lights with a size differ in every frame
     uint64_t frame = 0;         ///< Frame::index, which turns the directions of sweeps

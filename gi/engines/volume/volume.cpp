@@ -90,7 +90,7 @@ Focus VolumeEngine::focus_of(const Frame& frame) const {
 
 /// Brings the light at the faces up to date; in parts, as far as the time of the frame allows.
 Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
-    Basis basis{scene_, cuts_, {}, frame.index, focus_of(frame)};
+    Basis basis{scene_, frame.origin, cuts_, {}, frame.index, focus_of(frame)};
     for (const LightView& view : views_) basis.lights.push_back(view.light);
     if (light_.basis == basis) {
         maker_.stop();
@@ -105,8 +105,8 @@ Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
 
 /// Sets the picture to what pixels reflect of the light that was made last.
 Result<void> VolumeEngine::show_light(Frame& frame) {
-    // Coordinates of an earlier scene may have another origin.
-    if (!light_.basis || light_.basis->scene.bounds != scene_.bounds) {
+    // The bounds may have changed: a scan grows, and its light of a moment ago is better than none.
+    if (!light_.basis || light_.basis->origin != frame.origin) {
         frame.gl.radiance.clear(0);
         return {};
     }

@@ -51,6 +51,7 @@ struct LitOptions {
     PointSize size{};
     Clip clip{};
     std::optional<Bounds> bounds;  ///< of the scene; by default the cloud's root
+    glm::dvec3 origin{0.0};        ///< Frame::origin
     /// What the engine has computed in advance (Lit::bake of an earlier picture); null: it computes it.
     std::shared_ptr<const Bake> bake = nullptr;
 };
@@ -79,6 +80,7 @@ inline Result<Lit> draw_frame(Device& device, Engine& engine, const SurfelPool& 
                 .index = options.index,
                 .environment = options.environment,
                 .bounds = bounds,
+                .origin = options.origin,
                 .moving = options.moving,
                 .light_budget = options.light_budget,
                 .bake = bake.get(),

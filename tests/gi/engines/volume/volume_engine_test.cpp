@@ -52,6 +52,22 @@ TEST_F(VolumeEngineTest, LightMadeInPartsIsThatMadeAtOnce) {
     EXPECT_EQ(lit.radiance, whole.radiance);
 }
 
+TEST_F(VolumeEngineTest, LightOfAMomentAgoStaysWhileAScanGrows) {
+    const SurfelCloud room(scenes::closed_box(2, 60, glm::vec3(.6f)));
+    const auto engine = volume_engine().make();
+    LitOptions grown = options();
+    grown.settings.set(kOnlyBounce, 1);
+    const Lit first = light_up(*device_, *engine, room, camera(), grown);
+    grown.bounds = Bounds{glm::vec3(-1), glm::vec3(9)};
+    grown.moving = true;
+    grown.light_budget = StepBudget::timed(0);
+    EXPECT_EQ(light_up(*device_, *engine, room, camera(), grown).radiance, first.radiance);
+    grown.origin = {256, 0, 0};
+    const Lit moved = light_up(*device_, *engine, room, camera(), grown);
+    for (const glm::vec4& pixel : moved.radiance)
+        EXPECT_EQ(pixel.x, 0) << "its places are others, so it cannot be kept";
+}
+
 TEST_F(VolumeEngineTest, LightThatIsChangedAndChangedBackIsTheSame) {
     const SurfelCloud room(scenes::closed_box(2, 60, glm::vec3(.6f)));
     const auto engine = volume_engine().make();
