@@ -455,7 +455,7 @@ void ViewSession::send_request() {
     request.frame.camera = model_.view.rig.camera();
     request.frame.front_only = looks_in_from_outside(model_.view.site, request.frame.camera);
     request.frame.size = scaled_size(window_.framebuffer(), model_.view.resolution_scale);
-    // Averages of a sketch would take the processors from the conversion that replaces it.
+    // Averages and slow light of a sketch would take the processors from the conversion that replaces it.
     const bool sketch = std::ranges::any_of(scans_.rows(), grows);
     request.frame.accumulate = !request.moving && !sketch;
     if (shot_) request.pictures = shot_->pictures;
@@ -468,10 +468,8 @@ void ViewSession::send_request() {
         request.pictures = 1;
     }
     request.frame.moving = request.moving;
-    // While a scan grows, slow light would be that of a sketch, and take the processors from its conversion.
     request.frame.stand_in = request.moving || sketch;
-    // Something is seen at once, and light follows. What a sketch shows in motion has no light before the
-    // first picture at rest, and would be black.
+    // Something is seen at once, and light follows: of a sketch not before its first picture at rest.
     request.frame.colours_only = (!model_.view.picture || (sketch && request.moving && !lit_seen_)) &&
                                  !gi::engine_is(request.method.engine, &gi::EngineInfo::unlit);
     request.frame.stand_in_early = true;
