@@ -113,6 +113,24 @@ TEST_F(BakeJobTest, PicturesShowWhatIsUsableMeanwhileAndFollow) {
     EXPECT_EQ(gi::paint_hooks().steps, gi::paint::kMeanSteps);
 }
 
+TEST_F(BakeJobTest, AnEngineThatReadsLightStandsInForOneThatReadsNone) {
+    const auto source = open_input(cache_);
+    ASSERT_TRUE(source) << source.error().line();
+    request_.method.engine = "paint";
+    request_.method.settings = gi::default_settings(gi::Effort::interactive);
+    request_.frame.stand_in_early = true;
+    hold_before(0);
+    start({[] { return gi::Device::headless(); }, [] {}}, *source);
+    const uint64_t number = worker_->request(request_);
+    reached_.acquire();
+    auto picture = whole(number);
+    ASSERT_TRUE(picture) << worker_->error().error().line();
+    EXPECT_EQ(picture->stats.lit_by, gi::stand_in_engine().name);
+    go_on_.release();
+    while (picture && picture->stats.lit_by != "paint") picture = whole(number);
+    EXPECT_TRUE(picture);
+}
+
 TEST_F(BakeJobTest, AnUnfinishedOneNeverReplacesAFinishedOne) {
     compute();
     const std::string whole = test::bytes_of(place_);

@@ -133,12 +133,14 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
     return {};
 }
 
-/// Returns what the engines read that draw the frame, and the one that may stand in when the camera moves:
-/// its nodes must be there then.
+/// Returns what the engines read that draw the frame, and the one that may stand in: its nodes must be there
+/// then.
 gi::EngineNeeds Pipeline::State::needs(const FrameRequest& request) const {
     gi::EngineNeeds all = engine->info().needs;
     if (other) all = all | other->info().needs;
-    if (!request.wait && engine->info().reports_progress) all = all | gi::stand_in_engine().needs;
+    const gi::EngineInfo& info = engine->info();
+    const bool slow = info.reports_progress || (info.precomputes && request.stand_in_early);
+    if (!request.wait && slow) all = all | gi::stand_in_engine().needs;
     return all;
 }
 
