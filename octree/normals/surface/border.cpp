@@ -17,6 +17,10 @@ constexpr float kLook = 3.5f;    ///< a surface that goes on no farther than thi
 /// What looks like a border beside air is a hole if the surface goes on beyond it within this. Its rim keeps
 /// whole discs, which close it as far as they reach.
 constexpr float kGap = 10.0f;
+/// A floor below a board crosses the board's plane but does not continue it: more points beyond lie beside
+/// the plane than in it, and those in it along a line, so not farther apart across it than kSheet. Of leaves
+/// this says nothing: the points that belong to the surface lie up to kFlat over the plane.
+constexpr float kSheet = 2.5f, kFlat = 0.5f;
 constexpr float kBelow = 2.0f;     ///< and so far inside
 constexpr float kOutside = 0.5f;   ///< the border lies so far outside the outermost points
 constexpr float kFarthest = 2.0f;  ///< lines farther from the point are of no use
@@ -69,17 +73,22 @@ std::optional<Border> find_border(const Tile& around, const glm::vec3& centre, c
     border.distance = outermost + kOutside * spacing;
     if (border.distance > kFarthest * spacing) return std::nullopt;
 
-    int before = 0, behind = 0;
-    bool goes_on = false;
+    int before = 0, behind = 0, further = 0, crossing = 0;
+    float flat_from = kGap * spacing, flat_to = 0;  // where points beyond lie in the plane
     for (size_t i = 0; i < around.count; ++i) {
         const glm::vec3 p = glm::vec3(around.x[i], around.y[i], around.z[i]) - centre;
         const float u = glm::dot(border.toward, p) - outermost, v = glm::dot(along, p), h = glm::dot(n, p);
         if (std::abs(v) > kBeside * spacing || u < -kOthersBehind * spacing || u > kGap * spacing) continue;
         const glm::vec3 flat = p - n * h;
         if (std::abs(h) <= rim.level || h * h <= kSlope2 * glm::dot(flat, flat)) {
-            goes_on = goes_on || u > kLook * spacing;
+            if (u <= kLook * spacing) continue;
+            ++further;
+            if (std::abs(h) > rim.level) continue;
+            flat_from = std::min(flat_from, u);
+            flat_to = std::max(flat_to, u);
             continue;
         }
+        crossing += u > kLook * spacing && std::abs(h) < u;
         if (u > kOthersAhead * spacing || std::abs(h) > kOthersHeight * spacing) continue;
         if (u > kAhead * spacing) return std::nullopt;
         ++(h > 0 ? before : behind);
@@ -88,7 +97,9 @@ std::optional<Border> find_border(const Tile& around, const glm::vec3& centre, c
     border.beyond = before > kFewOthers   ? Beyond::rises
                     : behind > kFewOthers ? Beyond::falls
                                           : Beyond::nothing;
-    if (goes_on && border.beyond == Beyond::nothing) return std::nullopt;
+    const bool crosses =
+        rim.level < kFlat * spacing && further < crossing && flat_to - flat_from < kSheet * spacing;
+    if (further > 0 && !crosses && border.beyond == Beyond::nothing) return std::nullopt;
     return border;
 }
 

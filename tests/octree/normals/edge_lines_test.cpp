@@ -218,6 +218,34 @@ TEST(EdgeLines, NarrowHolesKeepWholeDiscsAndWideOnesEndAtTheirBorder) {
     }
 }
 
+/// The floor crosses the plane of a board that hangs above it, but does not continue the board.
+TEST(EdgeLines, BoardsOverAFloorEndAtTheirBorder) {
+    constexpr double kSpacing = 0.007, kGap = 6 * kSpacing;
+    for (const bool both_sides : {true, false}) {
+        Cloud cloud = testing::plane(20'000);  // z = 0
+        if (!both_sides) std::erase_if(cloud.points, [](const auto& p) { return p.x > 0.5; });
+        const size_t floor = cloud.points.size();
+        for (const glm::dvec3& p : testing::plane(20'000).points)
+            cloud.points.push_back({0.5, p.y, p.x + kGap});
+        cloud.normals.resize(cloud.points.size());
+        const Estimate found = estimate(cloud);
+        size_t beside = 0, lined = 0, wrong = 0;
+        for (size_t i = floor; i < cloud.points.size(); ++i) {
+            const glm::dvec3& p = cloud.points[i];
+            const double away = p.z - kGap;
+            if (away > kSpacing || std::abs(p.y - 0.5) > 0.47) continue;
+            ++beside;
+            const auto line = decode_edge(found.normals[i], found.edges[i].code);
+            if (!line) continue;
+            ++lined;
+            const double reach = line->distance * std::sqrt(double{found.areas[i]}) - away;
+            wrong += line->toward.z > -0.7 || std::abs(reach) > kSpacing;
+        }
+        EXPECT_GE(lined, beside * 7 / 10) << both_sides << " " << beside;
+        EXPECT_LE(wrong, lined / 10);
+    }
+}
+
 TEST(EdgeLines, OfAWireMeshAndOfStackedPointsAreFinite) {
     Random random(8);
     Cloud wires, stacked;
