@@ -113,16 +113,19 @@ bool sees(const OccupancyGrid& grid, const glm::dvec3& station, std::span<const 
     return static_cast<double>(seen) >= kSeen * static_cast<double>(looks);
 }
 
-/// Returns where the scanner stood, if the source is one scan from one place.
-std::optional<glm::dvec3> only_station(const octree::NodeSource& source) {
+ScannerPlaces stations_of(const octree::NodeSource& source) {
     const octree::SourceHeader& header = source.header();
-    if (source.parts() != 1 || header.scans.size() != 1) return std::nullopt;
-    const auto& stated = header.scans.front().stations;
-    const auto& estimated = header.estimated_stations;
-    if (stated.size() == 1) return stated.front().position;
-    if (stated.empty() && estimated.size() == 1 && estimated.front().saw_all)
-        return estimated.front().position;
-    return std::nullopt;
+    ScannerPlaces found;
+    if (source.parts() != 1) return found;  // their units may differ
+    for (const io::ScanInfo& scan : header.scans)
+        for (const io::Station& station : scan.stations) found.places.push_back(station.position);
+    const bool stated = !found.places.empty();
+    for (const octree::EstimatedStation& station : header.estimated_stations)
+        found.places.push_back(station.position);
+    if (header.scans.size() == 1 && found.places.size() == 1 &&
+        (stated || header.estimated_stations.front().saw_all))
+        found.only = found.places.front();
+    return found;
 }
 
 }  // namespace
@@ -133,20 +136,20 @@ std::string_view site_name(SiteKind kind) {
 }
 
 Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
-                 double metres_per_unit, bool has_gaps, const std::optional<glm::dvec3>& station) {
+                 double metres_per_unit, bool has_gaps, const ScannerPlaces& stations) {
     Site site;
     site.box = box;
     if (!std::isfinite(glm::length(box[0]) + glm::length(box[1])))
         site.box = {glm::dvec3(-1), glm::dvec3(1)};  // an empty cloud: nothing to frame
     site.metres_per_unit = metres_per_unit;
     OccupancyGrid grid(points, site.box);
-    Standing standing = find_standing_place(grid, metres_per_unit);
+    Standing standing = find_standing_place(grid, metres_per_unit, stations.places);
     // Points that lie close together in some places choose cells that are finer than the gaps between the
     // places, and walls let rays through.
     const double widest = kWidestGap / metres_per_unit;
     for (double cell = kCoarser * grid.cell(); has_gaps && cell <= widest; cell *= kCoarser) {
         OccupancyGrid coarse(points, site.box, cell);
-        Standing there = find_standing_place(coarse, metres_per_unit);
+        Standing there = find_standing_place(coarse, metres_per_unit, stations.places);
         if (there.enclosed_share < std::max(kInterior, standing.enclosed_share)) continue;
         grid = std::move(coarse);
         standing = std::move(there);
@@ -159,7 +162,8 @@ Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3
     else if (is_terrain(grid, site.box))
         site.kind = SiteKind::terrain;
     const bool from_inside = site.kind == SiteKind::interior && site.inside;
-    if (station && !from_inside && sees(grid, *station, site.outline)) site.station = station;
+    if (stations.only && !from_inside && sees(grid, *stations.only, site.outline))
+        site.station = stations.only;
     return site;
 }
 
@@ -168,7 +172,7 @@ Site survey_site(const octree::NodeSource& source) {
     const auto& points = found.positions;
     const bool has_gaps = source.header().has_gaps;
     Site site = survey_site(points, octree::robust_bounds(source), source.header().metres_per_unit, has_gaps,
-                            only_station(source));
+                            stations_of(source));
     site.cast = found.cast.result();
     site.coloured = found.cast.coloured();
     site.brightness = found.cast.brightness();

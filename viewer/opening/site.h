@@ -56,6 +56,12 @@ struct Site {
     std::optional<glm::dvec3> station;
 };
 
+/// Where the scanner stood, as far as is known. World units.
+struct ScannerPlaces {
+    std::vector<glm::dvec3> places;
+    std::optional<glm::dvec3> only;  ///< from which all is said to be scanned
+};
+
 /// Looks at a sample of the coarsest nodes (up to 64 of them are loaded, so it may block). Nodes that cannot
 /// be read are left out. An empty cloud is an object around its box.
 Site survey_site(const octree::NodeSource& source);
@@ -64,10 +70,8 @@ Site survey_site(const octree::NodeSource& source);
 inline constexpr size_t kEnoughPoints = 100'000;
 
 /// The same for points that are known already, in a box (world units). `has_gaps`: as of SourceHeader.
-/// `station`: the place from which all is said to be scanned.
 Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
-                 double metres_per_unit, bool has_gaps = false,
-                 const std::optional<glm::dvec3>& station = std::nullopt);
+                 double metres_per_unit, bool has_gaps = false, const ScannerPlaces& stations = {});
 
 /// Returns whether two sites are of one kind, or between two kinds, and their boxes differ by less than a
 /// twentieth, as those of a sample and of more points of the same scan do: views and light made for one suit

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -38,11 +39,14 @@ constexpr double kLeastOpen = .05;
 constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
 constexpr size_t kPlacesPerTask = 64;
 constexpr int kAzimuths = 24;
-constexpr size_t kViews = 16;             ///< that are compared
-constexpr double kBetweenViews = 1.5;     ///< distance between their places, at least
-constexpr double kWorthAView = .5;        ///< share of the best score
-constexpr double kStepBack = .2;          ///< length of a step, at least
-constexpr double kNearlyAsGood = .85;     ///< share of the most space ahead
+constexpr size_t kViews = 16;                                ///< that are compared
+constexpr double kBetweenViews = 1.5;                        ///< distance between their places, at least
+constexpr double kWorthAView = .5;                           ///< share of the best score
+constexpr double kStepBack = .2;                             ///< length of a step, at least
+constexpr double kNearlyAsGood = .85;                        ///< share of the most space ahead
+constexpr double kLowestStation = 1, kHighestStation = 2.6;  ///< over the floor
+constexpr double kFloorAround = 1.5;  ///< distance to a place to stand; there are no points below a tripod
+constexpr double kLeastOfFloor = .5;  ///< share of the size of the floor from which most is seen
 constexpr glm::dvec2 kPreferred{.8, .6};  ///< along no wall of most rooms
 constexpr double kWalled = .8;            ///< share of blocked directions from which a place is in a room
 constexpr size_t kMostLamps = 3;
@@ -139,14 +143,15 @@ struct RoomView {
     double space = 0;  ///< how much of it a picture shows: a score
 };
 
-/// Finds where to stand near a place and the horizontal direction in which a picture from there shows the
-/// most space. Most rooms are as long one way as the other: of directions that are nearly as good, one is
-/// chosen that more or other points do not change.
-RoomView look_along_the_room(const OccupancyGrid& grid, const glm::dvec3& near, double metre) {
+/// Finds where to stand near a place, or at it (`exactly`), and the horizontal direction in which a picture
+/// from there shows the most space. Most rooms are as long one way as the other: of directions that are
+/// nearly as good, one is chosen that more or other points do not change.
+RoomView look_along_the_room(const OccupancyGrid& grid, const glm::dvec3& near, double metre,
+                             bool exactly = false) {
     std::array<glm::dvec3, kAzimuths> eyes;
     std::array<double, kAzimuths> space{};
     for (int i = 0; i < kAzimuths; ++i) {
-        eyes[i] = step_back(grid, near, direction(azimuth_of(i), 0), metre);
+        eyes[i] = exactly ? near : step_back(grid, near, direction(azimuth_of(i), 0), metre);
         // Square roots, so that a column in front outweighs the length of what is beside it.
         for (double beside = -2; beside <= 2; beside += .5)
             space[i] += std::sqrt(grid.look(eyes[i], direction(azimuth_of(i + beside), 0)).distance);
@@ -199,6 +204,45 @@ std::vector<size_t> sizes_of_floors(const std::vector<Place>& places, double met
             std::upper_bound(floors.begin(), floors.end(), place.floor + kSameFloor * metre) -
             std::lower_bound(floors.begin(), floors.end(), place.floor - kSameFloor * metre)));
     return sizes;
+}
+
+/// Returns the number of the place to stand that is nearest to a station and has a floor from `least` on;
+/// none where the scanner did not stand on that floor as a person does.
+std::optional<size_t> place_under(const glm::dvec3& station, const std::vector<Place>& places,
+                                  const std::vector<size_t>& floors, double least, double metre) {
+    std::optional<size_t> best;
+    double nearest = kFloorAround * metre;
+    for (size_t i = 0; i < places.size(); ++i) {
+        const double height = (station.z - places[i].floor) / metre;
+        if (static_cast<double>(floors[i]) < least || height < kLowestStation || height > kHighestStation)
+            continue;
+        const double away = glm::distance(glm::dvec2(station), glm::dvec2(places[i].eye));
+        if (away < nearest) nearest = away, best = i;
+    }
+    return best;
+}
+
+/// A view, and the number of the place on whose floor it stands.
+struct PlacedView {
+    RoomView view;
+    size_t under = 0;
+};
+
+/// Returns the widest view from where a scanner stood, if it is about as wide as `widest`; else that one.
+PlacedView from_station(const OccupancyGrid& grid, const PlacedView& widest,
+                        std::span<const glm::dvec3> stations, const std::vector<Place>& places,
+                        const std::vector<size_t>& floors, double metre) {
+    const double least = kLeastOfFloor * static_cast<double>(floors[widest.under]);
+    PlacedView best = widest;
+    best.view.space *= kNearlyAsGood;
+    bool found = false;
+    for (const glm::dvec3& station : stations) {
+        const auto under = place_under(station, places, floors, least, metre);
+        if (!under || !enclosed(grid, station)) continue;
+        const RoomView view = look_along_the_room(grid, station, metre, true);
+        if (view.space > best.view.space) best = {view, *under}, found = true;
+    }
+    return found ? best : widest;
 }
 
 std::vector<glm::dvec3> places_of_lamps(const OccupancyGrid& grid, const StandingPlace& place, double metre) {
@@ -289,7 +333,8 @@ std::optional<glm::dvec3> sunward_of(const OccupancyGrid& grid, const StandingPl
 
 }  // namespace
 
-Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) {
+Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit,
+                             std::span<const glm::dvec3> stations) {
     const double metre = 1 / metres_per_unit;
     Standing found;
     if (grid.empty() || grid.cell() > kLeastHeight * metre) return found;  // cells hide rooms
@@ -317,14 +362,15 @@ Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) 
             views[i] = look_along_the_room(grid, in_rooms[best[i]].eye, metre);
     });
     const auto widest = std::ranges::max_element(views, {}, &RoomView::space);
-    const Place& under = in_rooms[best[static_cast<size_t>(widest - views.begin())]];
+    const auto [view, under] = from_station(
+        grid, {*widest, best[static_cast<size_t>(widest - views.begin())]}, stations, in_rooms, floor, metre);
     found.enclosed_share = static_cast<double>(in_rooms.size()) / static_cast<double>(places.size());
     StandingPlace place;
-    place.eye = widest->eye;
-    place.ahead = widest->ahead;
+    place.eye = view.eye;
+    place.ahead = view.ahead;
     place.free_ahead = grid.look(place.eye, place.ahead).distance;
-    place.floor = under.floor;
-    place.ceiling = under.ceiling;
+    place.floor = in_rooms[under].floor;
+    place.ceiling = in_rooms[under].ceiling;
     place.lamps = places_of_lamps(grid, place, metre);
     place.left_wall = along_left_wall(grid, place, metre);
     place.sunward = sunward_of(grid, place, metre);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "viewer/opening/occupancy.h"
 #include "viewer/opening/site.h"
@@ -14,7 +15,10 @@ struct Standing {
 };
 
 /// Looks for floors with room for a person above them, and for the place among those in rooms from which most
-/// of the floor is seen. From there it steps back along the room, to see all of it.
-Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit);
+/// of the floor is seen. From there it steps back along the room, to see all of it. Where a scanner stood in
+/// that room, at about the height of an eye, and the view is nearly as wide, the place is the scanner's: what
+/// hid parts of the room from it hides them from the viewer, too.
+Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit,
+                             std::span<const glm::dvec3> stations = {});
 
 }  // namespace lucarne::viewer

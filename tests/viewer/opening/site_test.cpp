@@ -102,7 +102,7 @@ void add_rectangle(std::vector<dvec3>& points, const Box& corners, size_t count,
 }
 
 Site from_station(const std::vector<dvec3>& points, const Box& box, const dvec3& station) {
-    return survey_site(points, box, 1, false, station);
+    return survey_site(points, box, 1, false, {{station}, station});
 }
 
 TEST(Site, WhatOneStationSawIsSeenFromItsSide) {
@@ -165,6 +165,21 @@ TEST(Site, AStationThatSeesLittleIsNotBelieved) {
     std::vector<dvec3> walls;
     add_faces(walls, kRoom, 60000, true, 1);
     EXPECT_FALSE(from_station(walls, kRoom, (kRoom[0] + kRoom[1]) / 2.0).station);
+}
+
+TEST(Site, ARoomIsSeenFromWhereAScannerStoodIfThatViewIsNearlyAsWide) {
+    std::vector<dvec3> points;
+    add_faces(points, kRoom, 60000, true, 1);
+    const auto eye_of = [&](const std::vector<dvec3>& stations) {
+        return survey_site(points, kRoom, 1, false, {stations, std::nullopt}).inside->eye;
+    };
+    const dvec3 without = eye_of({}), good(102.2, 201.8, 11.7), middle(102.5, 206, 11.7);
+    EXPECT_LT(glm::distance(eye_of({middle, good}), good), 1e-9);
+    const std::vector<std::vector<dvec3>> useless = {{middle},  // half of the room lies behind it
+                                                     {{102.2, 201.8, 12.8}},  // below the ceiling
+                                                     {{102.2, 198, 11.7}},    // outside
+                                                     {{102.2, 201.8, std::nan("")}}};
+    for (const auto& stations : useless) EXPECT_EQ(eye_of(stations), without) << stations.front().z;
 }
 
 TEST(Site, ARoomWithoutCeilingIsSeenFromOutside) {
