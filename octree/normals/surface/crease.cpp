@@ -13,9 +13,9 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kLeastRun = 6;  ///< points of a run
-/// A side has at least one of so many points of the patch. A plane across the two faces of a thin wall has
-/// fewer.
-constexpr size_t kLeastPart = 3;
+/// A side has at least one of so many points of the patch. That of a reveal that a station saw at a flat
+/// angle, beside a dense wall, has hardly more. A plane across the two faces of a thin wall has fewer.
+constexpr size_t kLeastPart = 5;
 constexpr size_t kLeastSide = 8;  ///< points of each of two planes at a crease
 /// Points within this many deviations of a plane belong to it. Where there is no noise, within this share of
 /// the spacing.
@@ -29,9 +29,9 @@ constexpr float kFlatter = 0.3f;
 /// A run, or a first refit, that is not flatter than this is not the start of a side. Of the sides that are
 /// used in the end, 99 of 100 begin with a flatter run.
 constexpr float kFlatRun = 0.5f;
-/// Least |n.n'| of a side and the whole window: 50 degrees. Between two sides at right angles it is 45
-/// degrees.
-constexpr float kLeastTurn = 0.64f;
+/// Least |n.n'| of a side and the whole window: 70 degrees. Between two sides at right angles it is 45
+/// degrees where both have as many points, and more for the side that has fewer.
+constexpr float kLeastTurn = 0.34f;
 
 /// The variance of heights over a plane that was fitted to `count` points.
 double variance_of(const Plane& plane, size_t count) {

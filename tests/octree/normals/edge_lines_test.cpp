@@ -101,7 +101,7 @@ TEST(EdgeLines, MostOfABoxsOutlineIsRightToAQuarterOfASpacing) {
     struct Limits {
         double noise, right, short_of_it;
     };
-    constexpr Limits kLimits[] = {{0.0, 0.8, 0.005}, {0.1, 0.6, 0.025}, {0.2, 0.45, 0.04}};
+    constexpr Limits kLimits[] = {{0.0, 0.95, 0.005}, {0.1, 0.72, 0.025}, {0.2, 0.48, 0.04}};
     for (const auto& [noise, least, most_short] : kLimits) {
         const auto [cloud, options] = scanned(noise * kBoxSpacing, false);
         const Estimate found = estimate(cloud, options);
