@@ -29,9 +29,9 @@ constexpr float kFlatter = 0.3f;
 /// A run, or a first refit, that is not flatter than this is not the start of a side. Of the sides that are
 /// used in the end, 99 of 100 begin with a flatter run.
 constexpr float kFlatRun = 0.5f;
-/// Least |n.n'| of a side and the whole window: 70 degrees. Between two sides at right angles it is 45
+/// Least |n.n'| of a side and the whole window: 60 degrees. Between two sides at right angles it is 45
 /// degrees where both have as many points, and more for the side that has fewer.
-constexpr float kLeastTurn = 0.34f;
+constexpr float kLeastTurn = 0.5f;
 
 /// The variance of heights over a plane that was fitted to `count` points.
 double variance_of(const Plane& plane, size_t count) {
