@@ -138,14 +138,14 @@ bool flat(const SurfelTree& tree, size_t slot) {
 
 }  // namespace
 
-void Photons::set_surfels(const LitTree& scene, const TracedTree& traced) {
+void Photons::set_surfels(const LitTree& scene, const TracedTree& traced, const std::atomic<bool>* stop) {
     const SurfelTree& tree = scene.tree();
     parent_of_.assign(tree.nodes.size(), kNoSurfel);
     for (size_t slot = 0; slot < tree.surfels.size(); ++slot) {
         const int child = tree.nodes[slot / 8].child[slot % 8];
         if (child >= 0) parent_of_[static_cast<size_t>(child)] = static_cast<uint32_t>(slot);
     }
-    exposures_ = tracing::exposures(*traced.tracer);
+    exposures_ = tracing::exposures(*traced.tracer, stop);
     shown_.resize(2 * exposures_.size());
     for (uint32_t i = 0; i < shown_.size(); ++i) {
         shown_[i] = i;

@@ -21,8 +21,9 @@ namespace lucarne::gi {
 /// side that others cover has the irradiance of what covers it: nodes are means of all their surfels.
 class Photons {
  public:
-    /// Takes the surfels of a tree. `traced` is made from it.
-    void set_surfels(const LitTree& scene, const TracedTree& traced);
+    /// Takes the surfels of a tree. `traced` is made from it. Gives up if `stop` becomes true: it must not be
+    /// used then.
+    void set_surfels(const LitTree& scene, const TracedTree& traced, const std::atomic<bool>* stop = nullptr);
 
     /// Adds what the surfels reflect of photons (`settings.sources` of them) to what they send out, evenly
     /// (`light`) and by lobes, both by surfel; photons leave by these as well. No lobes: nothing is glossy.

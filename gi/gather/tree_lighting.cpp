@@ -93,7 +93,8 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
     } else {
         if (!photons_) {
             photons_.emplace();
-            photons_->set_surfels(lit_, *traced_);
+            photons_->set_surfels(lit_, *traced_, frame.stop);
+            if (frame.stopped()) photons_.reset();
         }
         photons_->trace(lit_, *traced_, materials, rays, light, lobes, frame.stop);
     }
@@ -166,6 +167,8 @@ Result<void> TreeLighting::set_slots(std::span<const SideLight> slots, const Sid
 }
 
 Result<void> TreeLighting::add_direct(Frame& frame) {
+    if (traces_shadows(frame)) LUCARNE_TRY(trace_tree(frame));
+    if (frame.stopped()) return {};
     const TimedPass pass(frame, "direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, background_, true));
     if (traces_shadows(frame)) return add_traced(frame);
@@ -177,7 +180,6 @@ Result<void> TreeLighting::add_direct(Frame& frame) {
 }
 
 Result<void> TreeLighting::add_traced(Frame& frame) {
-    LUCARNE_TRY(trace_tree(frame));
     const TracedLights lights(*traced_->tracer, frame.lights, bright_, frame.settings[kLightSamples]);
     const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kSurfelsATask = 4096;
 /// Rays start so many radii above a disc: above the noise of its own sheet, and below other things.
-constexpr float kHeight = 2;
+constexpr float kHeight = 2, kFarthest = 1.01f * kHeight;
 constexpr uint64_t kExposureSeed = 0xe4705;
 
 /// Where rays start above a point of the disc of a surfel.
@@ -32,11 +32,11 @@ bool is_exposed(const SurfelTracer& tracer, size_t surfel, const glm::vec3& poin
     return hit && hit->surfel == surfel && is_this_side(tracer, disc, point, normal);
 }
 
-std::vector<Exposures> exposures(const SurfelTracer& tracer) {
+std::vector<Exposures> exposures(const SurfelTracer& tracer, const std::atomic<bool>* stop) {
     const std::vector<Surfel>& surfels = tracer.surfels();
     std::vector<Exposures> result(surfels.size());
     parallel_ranges(surfels.size(), kSurfelsATask, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
+        for (size_t i = first; i < last && !(stop && *stop); ++i) {
             const Surfel& surfel = surfels[i];
             Random random(kExposureSeed, i);
             const auto seen = [&](const glm::vec3& normal) {
@@ -44,7 +44,8 @@ std::vector<Exposures> exposures(const SurfelTracer& tracer) {
                 for (uint32_t k = 0; k < kExposurePoints; ++k) {
                     const glm::vec3 point = point_on_disc(surfel, random);
                     const auto hit = tracer.first_hit(above(surfel, point, normal), -normal);
-                    if (!hit) continue;
+                    // Rays pass beyond the disc's line.
+                    if (!hit || hit->distance > kFarthest * surfel.radius) continue;
                     if (hit->surfel != i)
                         exposure.cover = 2 * hit->surfel + (hit->back ? 1 : 0);
                     else if (is_this_side(tracer, surfel, point, normal))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +18,7 @@ inline constexpr uint32_t kUncovered = UINT32_MAX;
 /// What is seen from straight above one side of a disc.
 struct Exposure {
     uint32_t points = 0;  ///< of kExposurePoints of the disc, those that are exposed (is_exposed())
-    /// What is seen instead of the disc at the last point that is covered: twice the surfel, and one more if
+    /// What is close above the disc at the last point that is covered: twice the surfel, and one more if
     /// its back is seen.
     uint32_t cover = kUncovered;
 };
@@ -27,7 +28,7 @@ struct Exposures {
 
 /// Returns the exposures of each surfel. Discs overlap, and noise puts them above each other, so light meets
 /// only a part of each. The exposed parts of all discs add up to the surface, whatever the surfels' own
-/// shares of it.
-std::vector<Exposures> exposures(const SurfelTracer& tracer);
+/// shares of it. Gives up if `stop` becomes true.
+std::vector<Exposures> exposures(const SurfelTracer& tracer, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace lucarne::gi::tracing

@@ -231,7 +231,7 @@ Result<DrawingEngines> Pipeline::State::drawing_engines(const FrameRequest& requ
     }
     const bool quick = request.stand_in || (request.stand_in_early && surfels.stats().pending > 0);
     const bool unprepared =
-        request.stand_in_early && engine->info().precomputes && !baked.bake && !baked.ended;
+        request.stand_in_early && !request.wait && engine->info().precomputes && !baked.bake && !baked.ended;
     const auto may_draw = [&](const gi::Engine& one) {
         return !(quick && one.info().reports_progress) && !(unprepared && &one == engine.get());
     };

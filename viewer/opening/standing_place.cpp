@@ -214,8 +214,8 @@ std::optional<size_t> place_under(const glm::dvec3& station, const std::vector<P
     double nearest = kFloorAround * metre;
     for (size_t i = 0; i < places.size(); ++i) {
         const double height = (station.z - places[i].floor) / metre;
-        if (static_cast<double>(floors[i]) < least || height < kLowestStation || height > kHighestStation)
-            continue;
+        const bool stands = height >= kLowestStation && height <= kHighestStation;  // not NaN
+        if (static_cast<double>(floors[i]) < least || !stands) continue;
         const double away = glm::distance(glm::dvec2(station), glm::dvec2(places[i].eye));
         if (away < nearest) nearest = away, best = i;
     }

@@ -112,7 +112,8 @@ void ViewSession::take_picture() {
         newest && !sent_.small && own_engine && latest->stats.nodes_pending == 0 && last_source;
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
     relit_seen_ |= newest;
-    lit_seen_ |= !latest->moving && !gi::engine_is(latest->stats.lit_by, &gi::EngineInfo::unlit);
+    lit_seen_ |= latest->source == scans_.source() && !latest->moving &&
+                 !gi::engine_is(latest->stats.lit_by, &gi::EngineInfo::unlit);
     if (whole) help_in_the_dark(*latest);
 }
 
@@ -168,8 +169,8 @@ void ViewSession::take_extent() {
     };
     if (!placed_ && !std::ranges::all_of(scans_.shown(), is_open)) return;  // of scans that have been closed
     const bool first = !std::exchange(placed_, true);
-    const bool others = shown_scans_ != scans_.shown();
-    shown_scans_ = scans_.shown();
+    const bool others = std::exchange(shown_scans_, scans_.shown()) != scans_.shown();
+    lit_seen_ &= !others;
     // More points of the same scans must not shake the picture. Only once, when there are enough of them, the
     // view follows if they show something else than the first few; and once if the conversion has found the
     // station that all was scanned from.
@@ -459,7 +460,6 @@ void ViewSession::send_request() {
     const bool sketch = std::ranges::any_of(scans_.rows(), grows);
     request.frame.accumulate = !request.moving && !sketch;
     if (shot_) request.pictures = shot_->pictures;
-    // No engine stands in for the one that makes the new light.
     relit_ = relit_ && !request.moving;
     request.frame.complete = relit_;
     request.small = relit_ && !relit_seen_ && !shot_ && !sketch && is_slow(request.method.engine);

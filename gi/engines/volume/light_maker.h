@@ -26,6 +26,7 @@ namespace lucarne::gi::volume {
 struct Basis {
     SceneRevisions scene;
     glm::dvec3 origin{0.0};  ///< Frame::origin
+    Bounds bounds;           ///< Frame::bounds
     LightCutRevisions cuts;
     std::vector<Light> lights;  ///< of the views: samples of lights with a size differ in every frame
     uint64_t frame = 0;         ///< Frame::index, which turns the directions of sweeps

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <glm/common.hpp>
+
 #include "gi/bounce_options.h"
 #include "gi/engines/volume/light_maker.h"
 #include "gi/engines/volume/options.h"
@@ -19,6 +21,11 @@
 namespace lucarne::gi {
 namespace volume {
 namespace {
+
+bool overlap(const Bounds& a, const Bounds& b) {
+    const glm::vec3 common = glm::min(a.max, b.max) - glm::max(a.min, b.min);
+    return common.x >= 0 && common.y >= 0 && common.z >= 0;
+}
 
 constexpr const OptionInfo* kOptions[] = {
     &kBounces.info,   &kOnlyBounce.info, &kVoxelCount.info,      &kVolumeLevels.info, &kSweepDirections.info,
@@ -90,7 +97,7 @@ Focus VolumeEngine::focus_of(const Frame& frame) const {
 
 /// Brings the light at the faces up to date; in parts, as far as the time of the frame allows.
 Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
-    Basis basis{scene_, frame.origin, cuts_, {}, frame.index, focus_of(frame)};
+    Basis basis{scene_, frame.origin, frame.bounds, cuts_, {}, frame.index, focus_of(frame)};
     for (const LightView& view : views_) basis.lights.push_back(view.light);
     if (light_.basis == basis) {
         maker_.stop();
@@ -105,8 +112,10 @@ Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
 
 /// Sets the picture to what pixels reflect of the light that was made last.
 Result<void> VolumeEngine::show_light(Frame& frame) {
-    // The bounds may have changed: a scan grows, and its light of a moment ago is better than none.
-    if (!light_.basis || light_.basis->origin != frame.origin) {
+    // The bounds may have changed: a scan grows, and its light of a moment ago is better than none. That of
+    // a scan elsewhere is not.
+    if (!light_.basis || light_.basis->origin != frame.origin ||
+        !overlap(light_.basis->bounds, frame.bounds)) {
         frame.gl.radiance.clear(0);
         return {};
     }

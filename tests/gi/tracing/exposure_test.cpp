@@ -84,5 +84,18 @@ TEST(Exposure, WhatOfADiscLiesBehindAWallIsNotExposed) {
     EXPECT_NEAR(areas.back, 1, .025);
 }
 
+TEST(Exposure, WhatLiesFarBelowADiscsLineDoesNotCoverIt) {
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, kZ, 0.1f * kX, 0.1f * kY, 1, glm::vec3(0.5f));
+    surfels[0].edge = kX / (0.1f * surfels[0].radius);
+    scenes::add_rectangle(surfels, -kX - kY, 3.0f * kX, 3.0f * kY, 60, glm::vec3(0.5f));
+    const auto tracer = SurfelTracer::create(surfels);
+    ASSERT_TRUE(tracer);
+    const Exposures board = exposures(**tracer)[0];
+    EXPECT_LT(board.front.points + board.back.points, 2 * kExposurePoints) << "its line is no line";
+    EXPECT_EQ(board.front.cover, kUncovered);
+    EXPECT_EQ(board.back.cover, kUncovered);
+}
+
 }  // namespace
 }  // namespace lucarne::gi::tracing

@@ -66,6 +66,10 @@ TEST_F(VolumeEngineTest, LightOfAMomentAgoStaysWhileAScanGrows) {
     const Lit moved = light_up(*device_, *engine, room, camera(), grown);
     for (const glm::vec4& pixel : moved.radiance)
         EXPECT_EQ(pixel.x, 0) << "its places are others, so it cannot be kept";
+    grown.origin = {};
+    grown.bounds = Bounds{glm::vec3(100), glm::vec3(109)};
+    const Lit elsewhere = light_up(*device_, *engine, room, camera(), grown);
+    for (const glm::vec4& pixel : elsewhere.radiance) EXPECT_EQ(pixel.x, 0) << "it is that of another scan";
 }
 
 TEST_F(VolumeEngineTest, LightThatIsChangedAndChangedBackIsTheSame) {
