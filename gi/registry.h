@@ -13,8 +13,7 @@ namespace lucarne::gi {
 std::span<const EngineEntry> engines();
 /// Returns the engine that is used if none is chosen.
 const EngineInfo& default_engine();
-/// Returns the engine that draws in the place of one that takes long (EngineInfo::reports_progress,
-/// precomputes).
+/// Returns the engine that draws in the place of one that takes long or computes in advance.
 const EngineInfo& stand_in_engine();
 
 /// Find or make an engine by name. Errors (ErrorKind::arguments): unknown name; the message lists the known
