@@ -79,11 +79,11 @@ void VoxelMaker::mark(const Disc& disc, const glm::ivec3& cell, const glm::vec3&
     }
     const std::atomic_ref<uint64_t> marked(blocks_[number]);
     const glm::vec3 corner(cell);
-    constexpr auto kAlong = static_cast<float>(kBlocksAlong);
+    constexpr auto kPerVoxel = static_cast<float>(kBlocksAlong);
     uint64_t missing = ~marked.load(std::memory_order_relaxed);
     if (disc.gap <= kWidestGap) {
-        missing &= blocks_in_box(kAlong * (low - corner), kAlong * (high - corner));
-        missing = blocks_near_plane(missing, disc.normal, kAlong * (disc.place - corner));
+        missing &= blocks_in_box(kPerVoxel * (low - corner), kPerVoxel * (high - corner));
+        missing = blocks_near_plane(missing, disc.normal, kPerVoxel * (disc.place - corner));
     }
     if (missing == 0) return;
     marked.fetch_or(disc.gap > kWidestGap ? kAllBlocks : blocks_of(part(), cell), std::memory_order_relaxed);
