@@ -17,7 +17,7 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr size_t kSlotsATask = 65536, kPixelsAtOnce = 1024;
+constexpr size_t kSlotsATask = 65536, kPixelsATask = 1024;
 
 /// Whether shadows are found by rays: while the camera moves, maps are faster, which stay.
 bool traces_shadows(const Frame& frame) {
@@ -94,7 +94,10 @@ Result<void> TreeLighting::exchange(Frame& frame, Radiosity::Settings settings, 
         if (!photons_) {
             photons_.emplace();
             photons_->set_surfels(lit_, *traced_, frame.stop);
-            if (frame.stopped()) photons_.reset();
+            if (frame.stopped()) {
+                photons_.reset();
+                return {};
+            }
         }
         photons_->trace(lit_, *traced_, materials, rays, light, lobes, frame.stop);
     }
@@ -185,7 +188,7 @@ Result<void> TreeLighting::add_traced(Frame& frame) {
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
     const std::vector<Material> materials = device_materials(frame.materials);
     const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
-    parallel_ranges(surfaces.size(), kPixelsAtOnce, [&](size_t first, size_t last) {
+    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last && !frame.stopped(); ++i) {
             const SurfacePoint& at = surfaces[i];
             if (!(at.radius > 0)) continue;
