@@ -24,15 +24,13 @@ std::vector<GBufferTexel> download_gbuffer(const Frame& frame) {
 namespace {
 
 SurfacePoint visible_surface(const CameraView& camera, const GBufferTexel& texel, size_t number) {
-    static const auto& linear = native::linear_albedos();
     const vec2 pixel(static_cast<float>(number % camera.width), static_cast<float>(number / camera.width));
     SurfacePoint point;
     point.viewer = -glm::normalize(view_ray(camera, pixel + 0.5f));
     if (!(texel.depth > 0)) return point;
     point.position = texel_position(camera, pixel, texel);
     point.normal = texel_normal(texel);
-    point.albedo = {linear[texel.albedo & 1023u], linear[texel.albedo >> 10 & 1023u],
-                    linear[texel.albedo >> 20 & 1023u]};
+    point.albedo = native::linear_albedo(texel.albedo);
     // A half float may have become 0 or infinite, but there is a surface.
     point.radius = std::clamp(texel_radius(texel), 1e-7f, 65504.0f);
     point.material = texel_material(texel);

@@ -5,34 +5,21 @@
 #include <limits>
 #include <optional>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "gi/lighting/area_points.h"
+#include "gi/lighting/light_samples.h"
 #include "gi/tracing/light_sampling.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace {
 
-bool is_dark(const Light& light) {
-    return !(light.strength.x > 0 || light.strength.y > 0 || light.strength.z > 0);
+glm::dvec2 random_square(Random& random) {
+    const double x = random.uniform();
+    return {x, random.uniform()};
 }
-
-/// Even points of the unit square: a Fibonacci lattice, at a place that `random` chooses.
-class Lattice {
- public:
-    Lattice(uint32_t count, Random& random) : count_(count), shift_(random.uniform(), 0) {
-        shift_.y = random.uniform();
-    }
-    glm::dvec2 at(uint32_t i) const {
-        return glm::fract(shift_ + glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_));
-    }
-
- private:
-    uint32_t count_;
-    glm::dvec2 shift_;
-};
 
 }  // namespace
 
@@ -40,7 +27,7 @@ TracedLights::TracedLights(const tracing::SurfelTracer& tracer, std::span<const 
                            const SkyDirections& sky, uint32_t samples)
     : tracer_(tracer), sky_(sky) {
     for (const Light& light : lights)
-        if (!is_dark(light)) (tracing::is_sharp(light) ? sharp_ : soft_).push_back(light);
+        if (shines(light)) (tracing::is_sharp(light) ? sharp_ : soft_).push_back(light);
     const size_t takers = soft_.size() + (sky_.dark() ? 0 : 1);
     if (takers > 0) samples_ = std::max<uint32_t>(samples / static_cast<uint32_t>(takers), 1);
 }
@@ -75,15 +62,16 @@ glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& 
     Random random(key);
     const float share = 1 / static_cast<float>(samples_);
     for (const Light& light : soft_) {
-        const Lattice points(samples_, random);
+        const glm::dvec2 shift = random_square(random);
         for (uint32_t i = 0; i < samples_; ++i)
-            if (const auto in = tracing::sample_light(light, point.position, points.at(i)))
+            if (const auto in =
+                    tracing::sample_light(light, point.position, lattice_point(i, samples_, shift)))
                 add(in->direction, in->radiance * (share / in->pdf), in->distance);
     }
     if (sky_.dark()) return sum;
-    const Lattice points(samples_, random);
+    const glm::dvec2 shift = random_square(random);
     for (uint32_t i = 0; i < samples_; ++i) {
-        const SkyDirections::Drawn drawn = sky_.draw(points.at(i));
+        const SkyDirections::Drawn drawn = sky_.draw(lattice_point(i, samples_, shift));
         add(drawn.direction, drawn.flux * share, std::numeric_limits<float>::infinity());
     }
     return sum;

@@ -69,6 +69,10 @@ glm::dvec2 AreaPoints::at(uint64_t i) const {
     return glm::fract(static_cast<double>(i) * kR2 + shift_);
 }
 
+glm::dvec2 lattice_point(uint32_t i, uint32_t count, const glm::dvec2& shift) {
+    return glm::fract(shift + glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count));
+}
+
 glm::dvec2 on_disc(const glm::dvec2& square) {
     if (square.x == 0 && square.y == 0) return {0, 0};
     const bool flat = std::abs(square.x) > std::abs(square.y);

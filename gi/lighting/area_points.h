@@ -25,6 +25,10 @@ class AreaPoints {
     glm::dvec2 shift_;
 };
 
+/// Returns point `i` of a Fibonacci lattice of `count` points in [0, 1)^2, shifted on the torus. It is better
+/// than the R2 sequence for few points whose number is known.
+glm::dvec2 lattice_point(uint32_t i, uint32_t count, const glm::dvec2& shift);
+
 /// Maps the square [-1, 1]^2 to the unit disc: areas keep their ratios, and the middle stays the middle, so
 /// even points stay even (Shirley & Chiu 1997, "A low distortion map between disk and square").
 glm::dvec2 on_disc(const glm::dvec2& square);

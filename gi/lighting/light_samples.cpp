@@ -36,8 +36,7 @@ class Strata {
         glm::dvec2 shift;
         shift.x = random.uniform();
         shift.y = random.uniform();
-        return glm::fract(static_cast<double>(frame_) * kR2 +
-                          glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_) + shift);
+        return lattice_point(i, count_, static_cast<double>(frame_) * kR2 + shift);
     }
 
  private:
@@ -48,10 +47,6 @@ class Strata {
 bool has_size(const Light& light) {
     return light.kind == kRectangleLight || light.kind == kDiscLight ||
            (light.kind == kDirectionalLight && light.direction.w > 0);
-}
-
-bool shines(const Light& light) {
-    return light.strength.x > 0 || light.strength.y > 0 || light.strength.z > 0;
 }
 
 /// Returns the largest useful number of samples of a sun: its penumbra has no more texels than this.
@@ -125,6 +120,10 @@ void add_area(const Light& area, const Strata& strata, const DeviceCut* cut,
 }
 
 }  // namespace
+
+bool shines(const Light& light) {
+    return light.strength.x > 0 || light.strength.y > 0 || light.strength.z > 0;
+}
 
 uint32_t light_faces(const Light& light) {
     return light.kind == kPointLight ? 6 : light.kind == kCosineLight ? 4 : 1;

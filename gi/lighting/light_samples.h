@@ -29,6 +29,9 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
 std::vector<Light> sky_lights(const SkyDirections& sky, uint32_t count, uint64_t index, uint64_t seed,
                               uint64_t light);
 
+/// Returns whether a light sends out any light.
+bool shines(const Light& light);
+
 /// Returns the number of faces of a light, and so of its views (light_face() in gi/shared/light.h).
 uint32_t light_faces(const Light& light);
 

@@ -73,15 +73,12 @@ void LitSurfels::end_light(const Frame& frame) {
         lobes_.directions = directions_.download_all<SideLight>(count);
     }
     const std::vector<Material> materials = device_materials(frame.materials);
-    const auto& linear = native::linear_albedos();
     parallel_ranges(count, kLitAtOnce, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const FlatSurfel& surfel = surfels_[i];
             if (!(surfel.radius > 0)) continue;
             const Material& material = materials[surfel.material % materials.size()];
-            const Reflectance r = make_reflectance(
-                material, {linear[surfel.albedo & 1023u], linear[surfel.albedo >> 10 & 1023u],
-                           linear[surfel.albedo >> 20 & 1023u]});
+            const Reflectance r = make_reflectance(material, native::linear_albedo(surfel.albedo));
             reflectances_[i] = (r.kd + r.ks) / kPi;
             if (apart_) set_lobes(i, r);
             const glm::vec3 emission(material.emission);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "gi/shared/brdf.h"
@@ -19,6 +20,12 @@ inline const std::array<float, 1024>& linear_albedos() {
         return values;
     }();
     return kLinear;
+}
+
+/// Returns decode_albedo() of a code by that table.
+inline glm::vec3 linear_albedo(uint32_t code) {
+    const std::array<float, 1024>& linear = linear_albedos();
+    return {linear[code & 1023u], linear[code >> 10 & 1023u], linear[code >> 20 & 1023u]};
 }
 
 /// Tables for the diffuse reflectance kd of texels, make_reflectance() in brdf.h.

@@ -100,7 +100,9 @@ class Planes {
             {static_cast<float>(own.x), static_cast<float>(own.y), static_cast<float>(own.z),
              static_cast<float>(mixed.x), static_cast<float>(mixed.y), static_cast<float>(mixed.z)}};
         const octree::Plane plane = octree::plane_of(moments);
-        normal = glm::vec3(plane.normal);
+        const glm::vec3 found(plane.normal);
+        if (!std::isfinite(found.x + found.y + found.z)) return false;  // places too far apart for floats
+        normal = found;
         return std::sqrt(std::max(plane.variances[0], 0.0)) <= kThickness * radii / count;
     }
 

@@ -135,7 +135,6 @@ void ImageVoxels::inject(std::span<const SeenImage> images, const ImageUpdate& h
 
 /// Adds the samples of a picture to the sums of their voxels.
 void ImageVoxels::inject(const SeenImage& image, uint32_t number, const ImageUpdate& how) {
-    const auto& linear = native::linear_albedos();
     const uint32_t longer = std::max(image.view.width, image.view.height);
     const uint32_t step = how.samples == 0 ? 1 : std::max(1u, longer / how.samples);
     const uint32_t across = (image.view.width + step - 1) / step,
@@ -184,8 +183,7 @@ void ImageVoxels::inject(const SeenImage& image, uint32_t number, const ImageUpd
         const size_t pixel = size_t{at.y} * image.view.width + at.x;
         const GBufferTexel& texel = image.texels[pixel];
         sums.normal += texel_normal(texel);
-        sums.albedo += glm::vec3(linear[texel.albedo & 1023u], linear[texel.albedo >> 10 & 1023u],
-                                 linear[texel.albedo >> 20 & 1023u]);
+        sums.albedo += native::linear_albedo(texel.albedo);
         sums.count += 1;
         sums.image_count += 1;
         if (!image.light.empty()) sums.image_light += image.light[pixel];
