@@ -33,11 +33,6 @@ glm::vec3 far_irradiance(const VirtualLight& vpl, const GatherPoint& point, floa
     return irradiance_by(vpl, point.position, point.normal, point.lift) * (distance2 / (distance2 + reach2));
 }
 
-glm::vec3 start_of(const tracing::SurfelTracer& tracer, const GatherPoint& point) {
-    const glm::vec3 above = tracing::offset_origin(point.position, point.normal, point.lift);
-    return tracing::before_what_hides(tracer, above, point.viewer, point.lift);
-}
-
 }  // namespace
 
 BrightLight BrightLight::find(const LitTree& scene, const TracedTree& traced,
@@ -55,7 +50,7 @@ BrightLight BrightLight::find(const LitTree& scene, const TracedTree& traced,
     if (candidates.empty() || pilots.empty() || (stop && *stop)) return found;
 
     std::vector<glm::vec3> starts;
-    for (const GatherPoint& pilot : pilots) starts.push_back(start_of(*traced.tracer, pilot));
+    for (const GatherPoint& pilot : pilots) starts.push_back(ray_start(*traced.tracer, pilot));
     std::vector<double> brought(candidates.size());
     parallel_ranges(candidates.size(), kCandidatesATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last && !(stop && *stop); ++i)
@@ -104,7 +99,7 @@ glm::vec3 BrightLight::at(const GatherPoint& point, uint64_t number) const {
     for (size_t i = number % stride; i < vpls_.size(); i += stride) {
         const glm::vec3 irradiance = far_irradiance(vpls_[i], point, reach2_);
         if (!(mean_colour(irradiance) > 0)) continue;
-        if (!started) start = start_of(*traced_->tracer, point);
+        if (!started) start = ray_start(*traced_->tracer, point);
         started = true;
         if (!traced_->tracer->occluded(start, vpls_[i].origin)) sum += irradiance;
     }

@@ -21,6 +21,8 @@ namespace {
 constexpr size_t kPixelsATask = 4096, kPointsATask = 256;
 /// Pixels that tell what is bright for a picture.
 constexpr size_t kPilots = 128;
+constexpr size_t kPilotsForSky = 512;
+constexpr uint32_t kRaysToSky = 32;  ///< of each pixel that gathers, through openings
 /// Micro-buffers of specular lobes end where the lobe has fallen to this share of its peak; the rest is a
 /// thousandth of its light.
 constexpr float kLobeEnd = 1e-3f;
@@ -41,15 +43,23 @@ class LobeGather {
     /// Sets the mean that the lobe of each surface gathers (GatherPoint). A surface without a radius gathers
     /// nothing.
     Result<void> run(Lobe lobe, std::span<const SurfacePoint> surfaces,
-                     std::span<const Reflectance> reflectances, const FindBright& find_bright,
+                     std::span<const Reflectance> reflectances, const RareLight& rare,
                      std::vector<glm::vec4>& light) {
         lobe_ = lobe;
         surfaces_ = surfaces;
         reflectances_ = reflectances;
         bright_ = nullptr;
         gatherer_.set_no_bright();
-        if (find_bright) {
-            LUCARNE_ASSIGN(bright_, timed(frame_, "bright light", [&] { return bright_for(find_bright); }));
+        LUCARNE_TRY(gatherer_.set_openings(device_, nullptr));
+        if (rare.find_bright) {
+            LUCARNE_ASSIGN(bright_,
+                           timed(frame_, "bright light", [&] { return bright_for(rare.find_bright); }));
+        }
+        if (rare.find_openings) {
+            LUCARNE_ASSIGN(const SkyOpenings* openings, timed(frame_, "openings to the sky", [&] {
+                               return rare.find_openings(pilots(kPilotsForSky), seed_);
+                           }));
+            LUCARNE_TRY(gatherer_.set_openings(device_, openings, kRaysToSky));
         }
         const uint32_t step = frame_.settings[kGatherEvery];
         // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
@@ -95,26 +105,32 @@ class LobeGather {
         }
         return point;
     }
-    /// Finds what is bright for the picture, of which a few pixels gather first.
-    Result<const BrightLight*> bright_for(const FindBright& find) {
+    /// Returns about so many pixels that gather, all over the picture.
+    std::vector<GatherPoint> pilots(uint64_t count) const {
         std::vector<uint32_t> shown;
         for (uint32_t i = 0; i < surfaces_.size(); ++i)
             if (surfaces_[i].radius > 0) shown.push_back(i);
-        if (shown.empty()) return nullptr;
-        std::vector<GatherPoint> pilots;
-        Random random(seed_, kPilots);
-        for (uint64_t i = 0; i < kPilots; ++i) {
-            const double share = (static_cast<double>(i) + random.uniform()) / kPilots;
-            pilots.push_back(point_of(shown[static_cast<size_t>(share * static_cast<double>(shown.size()))]));
+        std::vector<GatherPoint> points;
+        if (shown.empty()) return points;
+        Random random(seed_, count);
+        for (uint64_t i = 0; i < count; ++i) {
+            const double share = (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
+            points.push_back(point_of(shown[static_cast<size_t>(share * static_cast<double>(shown.size()))]));
         }
-        std::vector<glm::vec4> found(pilots.size());
-        LUCARNE_TRY(gatherer_.gather(device_, what_, pilots, frame_.settings[kMicroBuffer], seed_, found,
+        return points;
+    }
+    /// Finds what is bright for the picture, of which a few pixels gather first.
+    Result<const BrightLight*> bright_for(const FindBright& find) {
+        const std::vector<GatherPoint> points = pilots(kPilots);
+        std::vector<glm::vec4> found(points.size());
+        if (points.empty()) return nullptr;
+        LUCARNE_TRY(gatherer_.gather(device_, what_, points, frame_.settings[kMicroBuffer], seed_, found,
                                      frame_.stop));
         if (frame_.stopped()) return nullptr;
         float typical = 0;
         for (const glm::vec4& light : found) typical += mean_colour(glm::vec3(light)) / kPilots;
         if (!(typical > 0)) return nullptr;
-        return find(pilots, typical, seed_);
+        return find(points, typical, seed_);
     }
 
     /// Gathers at those of these pixels that have a surface; results in their order.
@@ -173,12 +189,11 @@ class LobeGather {
 }  // namespace
 
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             Gathered what, const FindBright& find_bright,
-                                             GatherCounts& counts) {
+                                             Gathered what, const RareLight& rare, GatherCounts& counts) {
     auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     std::vector<glm::vec4> light;
     LobeGather gather(frame, device, gatherer, what, counts);
-    LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, {}, find_bright, light));
+    LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, {}, rare, light));
     if (frame.stopped()) return light;
     LUCARNE_TRY(reflect(frame, device, gatherer, what, std::move(surfaces), light, counts));
     return light;

@@ -8,6 +8,7 @@
 
 #include "gi/gather/bright_light.h"
 #include "gi/gather/gatherer.h"
+#include "gi/gather/sky_openings.h"
 #include "gi/host_frame.h"
 
 namespace lucarne::gi {
@@ -21,14 +22,21 @@ struct GatherCounts {
 /// second, W/(sr m^2), and tells the gatherer to leave it out. The third is a seed. Returns none if there is
 /// none.
 using FindBright = std::function<Result<const BrightLight*>(std::span<const GatherPoint>, float, uint64_t)>;
+/// Finds the openings to the sky that some points see. The second argument is a seed.
+using FindOpenings = std::function<Result<const SkyOpenings*>(std::span<const GatherPoint>, uint64_t)>;
+
+/// Light that few rays of micro-buffers would find by chance, and that rays of its own bring.
+struct RareLight {
+    FindBright find_bright;      ///< none: buffers find all light of surfels
+    FindOpenings find_openings;  ///< none: buffers find all of the sky
+};
 
 /// Returns what each pixel of the frame reflects of `what`, the light that `gatherer` holds, W/(sr m^2),
 /// row 0 on top. Diffuse and specular lobes gather by micro-buffers of their own. Pixels between those that
 /// gather (kGatherEvery) are interpolated. Leaves out the rest if the frame is stopped. Errors: the device
 /// failed.
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             Gathered what, const FindBright& find_bright,
-                                             GatherCounts& counts);
+                                             Gathered what, const RareLight& rare, GatherCounts& counts);
 
 /// Turns the mean radiance that each pixel receives (`light`) into what it reflects, W/(sr m^2). Specular
 /// lobes gather by micro-buffers of their own, as above. Errors likewise.

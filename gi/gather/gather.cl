@@ -146,6 +146,21 @@ float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction
     return vload3(y * sky.width + x, texels);
 }
 
+// Returns how much a ray that meets nothing counts: rays to spheres at openings (SkyOpenings) may find the same light, and
+// each counts by its density (balance heuristic, Veach & Guibas 1995). `openings`: middles and radii; `densities`: of the
+// rays to each, over those of the buffer toward its axis.
+float share_of_buffer(global const float4* openings, uint count, global const float* densities, float3 position,
+                      float3 direction, float cosine) {
+    float sum = cosine;
+    for (uint i = 0; i < count; ++i) {
+        if (!(densities[i] > 0.0f)) continue;
+        float4 sphere = openings[i];
+        float3 middle = sphere.xyz - position;
+        if (dot(direction, middle) > sqrt(dot(middle, middle) - sphere.w * sphere.w)) sum += densities[i];
+    }
+    return cosine / sum;
+}
+
 // Returns what of a side's light buffers see at a distance: VPLs bring the rest (BrightLight). `bright`: of each side
 // what is too bright, of which they bring the share of far points.
 float3 without_bright(float3 radiance, global const float* bright, float reach2, uint side, float distance) {
@@ -156,11 +171,13 @@ float3 without_bright(float3 radiance, global const float* bright, float reach2,
 // For each point: the mean radiance of its rays, W/(sr m^2) (times pi: irradiance), and the share of rays that meet
 // nothing. `light`: six floats a slot, the radiance of its front and of its back; lit = 0: `nodes` only block.
 // `lobe_light` and `lobe_directions`, likewise: what it sends out by specular lobes, if glossy is not 0. `sky` shines
-// where there is nothing; without texels it is dark. What is `bright` is left out unless reach2 is negative.
+// where there is nothing; without texels it is dark. What is `bright` is left out unless reach2 is negative. `open`:
+// spheres at openings, with so many `densities` for each point.
 kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
                    global const float* lobe_directions, uint glossy, global const float* bright, float reach2,
-                   global const float* sky_texels, SkyPicture sky, global const GatherPoint* points,
-                   global const float* rays, uint sets, uint count, global float4* results) {
+                   global const float* sky_texels, SkyPicture sky, global const float4* openings, uint open,
+                   global const float* densities, global const GatherPoint* points, global const float* rays,
+                   uint sets, uint count, global float4* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
     GatherPoint point = points[number];
@@ -187,7 +204,11 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
                 side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift, lit ? light : 0);
             if (side == kSeesSky) {
                 ++empty;
-                if (sky.width > 0) sum += weight * sky_radiance(sky_texels, sky, direction);
+                if (sky.width == 0) continue;
+                if (open > 0)
+                    weight *= share_of_buffer(openings, open, densities + number * open, place.position, direction,
+                                              height);
+                sum += weight * sky_radiance(sky_texels, sky, direction);
             } else if (lit) {
                 float3 radiance = vload3(side, light);
                 if (reach2 >= 0.0f) radiance = without_bright(radiance, bright, reach2, side, depths[pixel]);
@@ -234,16 +255,19 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
 }
 
 // For each point: the light that it receives by what its buffer sees, as the ten terms of a LightByNormal (three floats
-// each). At the point's own normal it is the mean over the rays, as gather() has it. What changes with the normal is that
+// each). `first`: the number of the first point's results and of what it sees. At the point's own normal it is the mean over the rays, as gather() has it. What changes with the normal is that
 // of the spherical harmonics up to the second order (Ramamoorthi & Hanrahan 2001, "An efficient representation for
 // irradiance environment maps"): they turn max(c, 0), c the cosine between normal and ray, into 3/32 + c/2 + 15/32 c^2.
 // Arguments as above.
 kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
                   global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky,
-                  global const GatherPoint* points, global const float* rays, uint sets, uint count,
+                  global const float4* openings, uint open, global const float* densities,
+                  global const GatherPoint* points, global const float* rays, uint sets, uint first, uint count,
                   global const uint* seen, global float* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
+    densities += number * open;
+    number += first;
     GatherPoint point = points[number];
     point.viewer.x = point.viewer.y = point.viewer.z = 0.0f;  // the start of the rays does not matter any more
     Place place = place_of(nodes, point, rays, sets);
@@ -263,6 +287,8 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
                 if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d);
             } else if (sky.width > 0) {
                 radiance = sky_radiance(sky_texels, sky, d);
+                if (open > 0)
+                    radiance *= share_of_buffer(openings, open, densities, place.position, d, dot(d, place.normal));
             }
             sum += radiance;
             // Rays are drawn by the cosine, so each stands for as much solid angle as 1 over its cosine; within the

@@ -5,14 +5,17 @@
 
 #include <fmt/format.h>
 
+#include "gi/shared/brdf.h"
+#include "io/core/parallel.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace {
 
 constexpr const char* kSource = "gi/gather/gather.cl";
-constexpr uint32_t kSets = 32;     // of rays; points choose among them
-constexpr float kNoRay = 2;        // as x
+constexpr uint32_t kSets = 32;  // of rays; points choose among them
+constexpr float kNoRay = 2;     // as x
+constexpr size_t kPointsATask = 64;
 constexpr double kRim = 1 - 1e-6;  // rays in the plane of the surface would meet it
 /// Points of one run of the kernel, short enough for displays' watchdogs and to be stopped in between, and
 /// work-items of a group.
@@ -52,6 +55,7 @@ Result<std::vector<float>> MicroBuffers::nearness() const {
 Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
     ++tree_;
     set_no_bright();
+    openings_ = nullptr;
     empty_ = tree.empty();
     const WideNode nothing = empty_node();
     const auto bytes = std::as_bytes(empty_ ? std::span(&nothing, 1) : std::span(tree.nodes));
@@ -73,6 +77,44 @@ Result<void> Gatherer::set_bright(ClDevice& device, std::span<const SideLight> s
     LUCARNE_TRY(bright_.upload(0, bytes));
     reach2_ = reach2;
     return {};
+}
+
+Result<void> Gatherer::set_openings(ClDevice& device, const SkyOpenings* openings, uint32_t rays) {
+    openings_ = nullptr;
+    if (!openings || openings->empty()) return {};
+    const auto bytes = std::as_bytes(openings->spheres());
+    LUCARNE_TRY(device.reserve(spheres_, bytes.size(), "openings to the sky"));
+    LUCARNE_TRY(spheres_.upload(0, bytes));
+    openings_ = openings;
+    rays_to_sky_ = rays;
+    return {};
+}
+
+Result<void> Gatherer::send_densities(ClDevice& device, std::span<const GatherPoint> points, uint32_t grid) {
+    const size_t spheres = openings_->spheres().size();
+    densities_.resize(points.size() * spheres);
+    rays_over_buffer_ = static_cast<float>(rays_to_sky_) / (static_cast<float>(grid * grid) * kPi / 4);
+    parallel_ranges(points.size(), kPointsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            openings_->find_densities(points[i], rays_over_buffer_,
+                                      std::span(densities_).subspan(i * spheres, spheres));
+    });
+    const auto bytes = std::as_bytes(std::span(densities_));
+    LUCARNE_TRY(device.reserve(densities_of_, bytes.size(), "rays to openings"));
+    return densities_of_.upload(0, bytes);
+}
+
+void Gatherer::each_sky_ray(
+    std::span<const GatherPoint> points,
+    const std::function<void(size_t, const glm::vec3&, const glm::vec3&)>& visit) const {
+    const size_t spheres = openings_->spheres().size();
+    parallel_ranges(points.size(), kPointsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            openings_->each_ray(
+                points[i], std::span(densities_).subspan(i * spheres, spheres), rays_over_buffer_,
+                rays_to_sky_,
+                [&](const glm::vec3& direction, const glm::vec3& light) { visit(i, direction, light); });
+    });
 }
 
 Result<void> Gatherer::set_lobes(ClDevice& device, const SideLobes& lobes) {
@@ -122,7 +164,7 @@ Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed)
 Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points,
                               uint32_t side, uint64_t seed, std::span<glm::vec4> results,
                               const std::atomic<bool>* stop, const std::function<void(size_t)>& done) {
-    const auto [lit, glossy, sky] = asked(what);
+    const auto [lit, glossy, sky, open] = asked(what);
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
     LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid)));
@@ -133,13 +175,20 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
     for (size_t first = 0; first < points.size(); first += launch.points) {
         if (stop && *stop) return {};
         const size_t count = std::min(launch.points, points.size() - first);
-        LUCARNE_TRY(points_.upload(0, std::as_bytes(points.subspan(first, count))));
+        const auto some = points.subspan(first, count);
+        if (open > 0) LUCARNE_TRY(send_densities(device, some, grid));
+        LUCARNE_TRY(points_.upload(0, std::as_bytes(some)));
         LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit,
                                 glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,
                                 reach2_ >= 0 ? bright_ : nodes_, reach2_,
-                                sky.width > 0 ? sky_texels_ : nodes_, sky, points_, rays_, kSets,
+                                sky.width > 0 ? sky_texels_ : nodes_, sky, open > 0 ? spheres_ : nodes_, open,
+                                open > 0 ? densities_of_ : nodes_, points_, rays_, kSets,
                                 static_cast<uint32_t>(count), results_));
         LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
+        if (open > 0)
+            each_sky_ray(some, [&](size_t i, const glm::vec3&, const glm::vec3& light) {
+                results[first + i] += glm::vec4(light, 0);
+            });
         if (done) done(first + count);
     }
     return {};
@@ -147,7 +196,9 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
 
 Gatherer::Asked Gatherer::asked(Gathered what) const {
     const bool lit = what != Gathered::sky && !empty_;
-    return {lit, lit && glossy_, what != Gathered::light_of_surfels ? sky_ : SkyPicture{}};
+    const bool sky = what != Gathered::light_of_surfels;
+    return {lit, lit && glossy_, sky ? sky_ : SkyPicture{},
+            sky && openings_ ? static_cast<uint32_t>(openings_->spheres().size()) : 0};
 }
 
 Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points, uint32_t side,
@@ -187,16 +238,30 @@ Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered wh
                                                    const MicroBuffers& buffers) {
     std::vector<LightByNormal> result(buffers.count());
     if (result.empty()) return result;
-    const auto [lit, glossy, sky] = asked(what);
+    const auto [lit, glossy, sky, open] = asked(what);
     LUCARNE_TRY(make_rays(device, buffers.grid_, buffers.seed_));
     LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "shade", defines_for(buffers.grid_)));
     LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightByNormal), "gathered light"));
     const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
-    LUCARNE_TRY(kernel->run(ClRange(result.size(), launch.group), nodes_, lit ? light_ : nodes_, lit,
-                            glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,
-                            sky.width > 0 ? sky_texels_ : nodes_, sky, buffers.points_, rays_, kSets,
-                            static_cast<uint32_t>(result.size()), buffers.seen_, results_));
+    const std::span<const GatherPoint> points = buffers.held_;
+    std::vector<LightByNormal> by_rays(open > 0 ? points.size() : 0);
+    for (size_t first = 0; first < result.size(); first += launch.points) {
+        const size_t count = std::min(launch.points, result.size() - first);
+        if (open > 0) LUCARNE_TRY(send_densities(device, points.subspan(first, count), buffers.grid_));
+        LUCARNE_TRY(kernel->run(
+            ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit, glossy ? lobe_light_ : nodes_,
+            glossy ? lobe_directions_ : nodes_, glossy, sky.width > 0 ? sky_texels_ : nodes_, sky,
+            open > 0 ? spheres_ : nodes_, open, open > 0 ? densities_of_ : nodes_, buffers.points_, rays_,
+            kSets, static_cast<uint32_t>(first), static_cast<uint32_t>(count), buffers.seen_, results_));
+        if (open == 0) continue;
+        each_sky_ray(points.subspan(first, count),
+                     [&](size_t i, const glm::vec3& direction, const glm::vec3& light) {
+                         by_rays[first + i].add(light_from(direction, points[first + i].normal, light), 1);
+                     });
+        LUCARNE_TRY(device.finish());
+    }
     LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(result))));
+    for (size_t i = 0; i < by_rays.size(); ++i) result[i].add(by_rays[i], 1);
     return result;
 }
 

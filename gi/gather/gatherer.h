@@ -15,6 +15,7 @@
 #include "gi/gather/gather_point.h"
 #include "gi/gather/gather_sky.h"
 #include "gi/gather/light_by_normal.h"
+#include "gi/gather/sky_openings.h"
 #include "gi/gather/sky_picture.h"
 #include "gi/tree/surfel_tree.h"
 
@@ -27,6 +28,8 @@ enum class Gathered : uint8_t { light_of_surfels, sky, both };
 class MicroBuffers {
  public:
     size_t count() const { return count_; }
+    /// The points whose buffers these are.
+    std::span<const GatherPoint> points() const { return held_; }
     /// Returns what the pixels of all buffers see (gather_point.h), in order of the points. Errors: the
     /// device failed.
     Result<std::vector<uint32_t>> seen() const;
@@ -59,6 +62,9 @@ class Gatherer {
     void set_no_bright() { reach2_ = kNoReach; }
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.
     Result<void> set_sky(ClDevice& device, const GatherSky& sky);
+    /// Has each point look for the sky through openings with so many rays of its own as well, until the next
+    /// call or another tree comes. The openings must live until then. Null: without. Errors: device memory.
+    Result<void> set_openings(ClDevice& device, const SkyOpenings* openings, uint32_t rays = 0);
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
     /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
     /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`
@@ -80,17 +86,29 @@ class Gatherer {
     struct Asked {
         uint32_t lit, glossy;
         SkyPicture sky;
+        uint32_t open;  ///< spheres at openings
     };
     /// Returns what a kernel needs to know of the light that is asked for.
     Asked asked(Gathered what) const;
+    /// Sends to the device with what density the points look for the sky through openings.
+    Result<void> send_densities(ClDevice& device, std::span<const GatherPoint> points, uint32_t grid);
+    /// Calls visit(i, direction, light) for the rays of these points that meet the sky
+    /// (SkyOpenings::each_ray()).
+    void each_sky_ray(std::span<const GatherPoint> points,
+                      const std::function<void(size_t, const glm::vec3&, const glm::vec3&)>& visit) const;
     Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);
 
     static constexpr float kNoReach = -1;
 
-    ClBuffer nodes_, light_, bright_, lobe_light_, lobe_directions_, sky_texels_, points_, results_, rays_;
+    ClBuffer nodes_, light_, bright_, lobe_light_, lobe_directions_, sky_texels_, spheres_, densities_of_,
+        points_, results_, rays_;
     SkyPicture sky_{};
     bool empty_ = true, glossy_ = false;
     float reach2_ = kNoReach;
+    const SkyOpenings* openings_ = nullptr;
+    uint32_t rays_to_sky_ = 0;
+    float rays_over_buffer_ = 0;    ///< rays_to_sky_ over the rays of a buffer
+    std::vector<float> densities_;  ///< of the points of one launch
     uint32_t grid_ = 0;
     uint64_t seed_ = 0;
     uint64_t tree_ = 0;  ///< number of the tree

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace lucarne::gi {
@@ -30,5 +32,21 @@ struct LightByNormal {
     }
 };
 static_assert(sizeof(LightByNormal) == 120);
+
+/// Returns light from one direction of which a surface with the normal `normal` receives `light`. Terms as in
+/// the kernel `shade` of gather.cl.
+inline LightByNormal light_from(const glm::vec3& direction, const glm::vec3& normal, const glm::vec3& light) {
+    const glm::vec3 &d = direction, &n = normal;
+    const glm::vec3 weighted = light / std::max(glm::dot(d, n), 0.1f);
+    const glm::vec3 linear = 0.5f * weighted, squares = 0.46875f * weighted;
+    LightByNormal result{{glm::vec3(0.0f), linear * d.x, linear * d.y, linear * d.z, squares * (d.x * d.x),
+                          squares * (d.y * d.y), squares * (d.z * d.z), squares * (2 * d.x * d.y),
+                          squares * (2 * d.y * d.z), squares * (2 * d.z * d.x)}};
+    const std::array<float, 10> powers{0,         n.x,       n.y,       n.z,       n.x * n.x,
+                                       n.y * n.y, n.z * n.z, n.x * n.y, n.y * n.z, n.z * n.x};
+    result.terms[0] = light;
+    for (size_t k = 1; k < powers.size(); ++k) result.terms[0] -= powers[k] * result.terms[k];
+    return result;
+}
 
 }  // namespace lucarne::gi

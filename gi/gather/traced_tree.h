@@ -4,6 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
+#include "gi/gather/gather_point.h"
 #include "gi/gather/lit_tree.h"
 #include "gi/tracing/surfel_tracer.h"
 
@@ -18,5 +21,8 @@ struct TracedTree {
     std::vector<uint32_t> slot_of;    ///< of each surfel of `tracer`: its slot in the tree
     std::vector<uint32_t> surfel_of;  ///< its number in the light cut
 };
+
+/// Returns where rays of a point start, as those of its micro-buffer.
+glm::vec3 ray_start(const tracing::SurfelTracer& tracer, const GatherPoint& point);
 
 }  // namespace lucarne::gi

@@ -49,6 +49,7 @@ Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
 void TreeLighting::begin(Frame& frame) {
     views_ = light_views(frame, bright_, frame.index);
     light_gbuffers_.begin(frame.gl.device, views_, views_.size());
+    openings_ = {};
 }
 
 Result<void> TreeLighting::make_tree(Frame& frame) {
@@ -58,6 +59,8 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
     light_of_.reset();
     photons_.reset();
     bright_light_ = {};
+    LUCARNE_TRY(gatherer_.set_openings(*opencl_, nullptr));
+    openings_ = {};
     traced_.reset();
     LUCARNE_TRY(lit_.set_surfels(frame));
     LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));
@@ -136,6 +139,14 @@ Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<con
     if (bright_light_.empty()) return nullptr;
     LUCARNE_TRY(gatherer_.set_bright(*opencl_, bright_light_.excess(), bright_light_.reach2()));
     return &bright_light_;
+}
+
+Result<const SkyOpenings*> TreeLighting::find_openings(Frame& frame, std::span<const GatherPoint> pilots,
+                                                       uint64_t seed) {
+    LUCARNE_TRY(trace_tree(frame));
+    LUCARNE_TRY(gatherer_.set_openings(*opencl_, nullptr));
+    openings_ = SkyOpenings::find(*traced_->tracer, sky_, pilots, seed, frame.stop);
+    return &openings_;
 }
 
 Result<void> TreeLighting::trace_tree(Frame& frame) {

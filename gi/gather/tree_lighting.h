@@ -15,6 +15,7 @@
 #include "gi/gather/lit_tree.h"
 #include "gi/gather/photons.h"
 #include "gi/gather/radiosity.h"
+#include "gi/gather/sky_openings.h"
 #include "gi/gather/traced_tree.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
@@ -42,6 +43,10 @@ class TreeLighting {
     /// out. make_light() has to come first. Returns none if there is none. Errors: Embree's, a device failed.
     Result<const BrightLight*> find_bright(Frame& frame, std::span<const GatherPoint> pilots, float typical,
                                            uint64_t seed);
+    /// Finds the openings to the sky that some points see (SkyOpenings::find()), for the gatherer; empty if
+    /// there are none. Errors: Embree's.
+    Result<const SkyOpenings*> find_openings(Frame& frame, std::span<const GatherPoint> pilots,
+                                             uint64_t seed);
     /// Gives the gatherer other light: the surfels' own (if `own`), and what slots reflect of this
     /// irradiance, W/m^2, by side (twice the slot, and one more for the back). make_light() has to come
     /// first. Errors: a device failed.
@@ -93,6 +98,7 @@ class TreeLighting {
     std::optional<TracedTree> traced_;  ///< of the tree, once something asks for it
     std::optional<Photons> photons_;    ///< likewise
     BrightLight bright_light_;          ///< for the last picture
+    SkyOpenings openings_;              ///< likewise
     std::optional<uint64_t> tree_of_;   ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()

@@ -53,6 +53,8 @@ constexpr size_t kMostSecondariesHeld = 262144;  ///< their micro-buffers take 8
 constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
 constexpr size_t kRepairsInMotion = 2048;        ///< likewise, in a frame of a motion
+constexpr size_t kPilots = 512;                  ///< primary points that look for openings to the sky
+constexpr uint32_t kRaysOfPrimaries = 64, kRaysOfSecondaries = 16;  ///< through openings
 
 class EnvironmentEngine final : public Engine {
  public:
@@ -73,6 +75,8 @@ class EnvironmentEngine final : public Engine {
     Result<std::vector<glm::vec3>> irradiance_at(Frame& frame, std::span<const uint32_t> sides,
                                                  Gathered what);
     Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
+    Result<std::vector<LightByNormal>> shade(Gathered what, const MicroBuffers& buffers,
+                                             uint32_t rays_to_sky);
     Result<std::vector<Cache>> gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
                                          std::span<const uint32_t> pixels, float spacing, Gathered what,
                                          std::span<glm::vec4> light);
@@ -91,6 +95,7 @@ class EnvironmentEngine final : public Engine {
     KeptCaches kept_;
     bool lit_ = false;  ///< the light that surfels send out is there: the last frame was finished
     GatherCounts lobes_;
+    const SkyOpenings* openings_ = nullptr;  ///< of the frame; none: buffers find all of the sky
     uint64_t seed_ = 0;
     size_t primaries_ = 0, gathering_ = 0, repaired_ = 0, reported_ = 0;
 };
@@ -210,17 +215,27 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
     LUCARNE_TRY(
         gatherer.see(lighting_.opencl(), points, kSecondarySide, seed_, secondary_buffers_, frame.stop));
     if (frame.stopped()) return irradiances;
-    LUCARNE_ASSIGN(const auto gathered, gatherer.shade(lighting_.opencl(), what, secondary_buffers_));
+    LUCARNE_ASSIGN(const auto gathered, shade(what, secondary_buffers_, kRaysOfSecondaries));
     for (size_t i = 0; i < places.size(); ++i)
         irradiances[places[i]] = kPi * gathered[i].on(points[i].normal);
     return irradiances;
+}
+
+/// Lights micro-buffers, whose points cast so many rays of their own at openings to the sky.
+Result<std::vector<LightByNormal>> EnvironmentEngine::shade(Gathered what, const MicroBuffers& buffers,
+                                                            uint32_t rays_to_sky) {
+    Gatherer& gatherer = lighting_.gatherer();
+    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, rays_to_sky));
+    LUCARNE_ASSIGN(auto light, gatherer.shade(lighting_.opencl(), what, buffers));
+    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), nullptr));
+    return light;
 }
 
 /// Lights the micro-buffers of the primary points.
 Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePlace> primaries,
                                            Gathered what) {
     const TimedPass pass(frame, "caches");
-    LUCARNE_ASSIGN(const auto light, lighting_.gatherer().shade(lighting_.opencl(), what, buffers_));
+    LUCARNE_ASSIGN(const auto light, shade(what, buffers_, kRaysOfPrimaries));
     LUCARNE_ASSIGN(const auto nearness, buffers_.nearness());
     caches_.clear();
     std::vector<float> reaches;
@@ -254,7 +269,7 @@ Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<
         LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer], seed_,
                                              repairs_, frame.stop));
         if (frame.stopped()) break;
-        LUCARNE_ASSIGN(const auto gathered, lighting_.gatherer().shade(lighting_.opencl(), what, repairs_));
+        LUCARNE_ASSIGN(const auto gathered, shade(what, repairs_, kRaysOfSecondaries));
         for (size_t i = 0; i < gathered.size(); ++i) {
             const SurfacePoint& at = surfaces[some[i]];
             light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
@@ -311,6 +326,15 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     }
     if (frame.stopped()) return {};
     report(frame, 0.4);
+    if (lighting_.has_sky()) {
+        const TimedPass pass(frame, "openings to the sky");
+        const std::span<const GatherPoint> points = buffers_.points();
+        const size_t count = std::min(kPilots, points.size());
+        std::vector<GatherPoint> pilots;
+        for (size_t i = 0; i < count; ++i) pilots.push_back(points[i * points.size() / count]);
+        LUCARNE_ASSIGN(openings_, lighting_.find_openings(frame, pilots, seed_));
+    }
+    if (frame.stopped()) return {};
     if (wants_indirect(s)) LUCARNE_TRY(light_secondaries(frame, primaries));
     if (frame.stopped()) return {};
     report(frame, 0.8);
@@ -369,6 +393,7 @@ Result<void> EnvironmentEngine::follow(Frame& frame) {
 
 Result<void> EnvironmentEngine::render(Frame& frame) {
     lighting_.begin(frame);
+    openings_ = nullptr;
     frame.gl.radiance.clear(0);
     seed_ = mix64(frame.settings[kSeed], frame.index);
     primaries_ = gathering_ = repaired_ = reported_ = 0;

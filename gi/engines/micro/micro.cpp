@@ -67,14 +67,17 @@ Result<void> MicroEngine::gather(Frame& frame) {
     const Gathered what = !wants_indirect(s)                       ? Gathered::sky
                           : wants_direct(s) && lighting_.has_sky() ? Gathered::both
                                                                    : Gathered::light_of_surfels;
-    FindBright find_bright;
+    RareLight rare;
     if (wants_indirect(s))
-        find_bright = [this, &frame](std::span<const GatherPoint> pilots, float typical, uint64_t seed) {
+        rare.find_bright = [this, &frame](std::span<const GatherPoint> pilots, float typical, uint64_t seed) {
             return lighting_.find_bright(frame, pilots, typical, seed);
         };
-    LUCARNE_ASSIGN(
-        const std::vector<glm::vec4> light,
-        gather_pixels(frame, lighting_.opencl(), lighting_.gatherer(), what, find_bright, counts_));
+    if (what != Gathered::light_of_surfels)
+        rare.find_openings = [this, &frame](std::span<const GatherPoint> pilots, uint64_t seed) {
+            return lighting_.find_openings(frame, pilots, seed);
+        };
+    LUCARNE_ASSIGN(const std::vector<glm::vec4> light,
+                   gather_pixels(frame, lighting_.opencl(), lighting_.gatherer(), what, rare, counts_));
     if (!frame.stopped()) upload_radiance(frame, light);
     return {};
 }
