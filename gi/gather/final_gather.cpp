@@ -29,6 +29,11 @@ constexpr float kLobeEnd = 1e-3f;
 
 enum class Lobe : uint8_t { diffuse, specular };
 
+/// Returns the scale of micro-buffers of lobes with an exponent (GatherPoint).
+float lobe_scale(const EngineSettings& settings, float exponent) {
+    return settings[kWarp] == Warp::hemisphere ? 1.0f : std::sqrt(1 - std::pow(kLobeEnd, 2 / exponent));
+}
+
 /// One picture of gathered light: of one lobe of the pixels that have it.
 class LobeGather {
  public:
@@ -51,6 +56,7 @@ class LobeGather {
         bright_ = nullptr;
         gatherer_.set_no_bright();
         LUCARNE_TRY(gatherer_.set_openings(device_, nullptr));
+        gatherer_.set_fill(frame_.settings[kFill]);
         if (rare.find_bright) {
             LUCARNE_ASSIGN(bright_,
                            timed(frame_, "bright light", [&] { return bright_for(rare.find_bright); }));
@@ -100,8 +106,7 @@ class LobeGather {
         if (lobe_ == Lobe::specular) {
             point.exponent = reflectances_[pixel].exponent;
             point.axis = glm::normalize(2 * glm::dot(at.normal, at.viewer) * at.normal - at.viewer);
-            const float cosine = std::pow(kLobeEnd, 1 / point.exponent);
-            point.scale = std::sqrt(1 - cosine * cosine);
+            point.scale = lobe_scale(frame_.settings, point.exponent);
         }
         return point;
     }
@@ -221,8 +226,8 @@ Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathere
     for (size_t i = 0; i < light.size(); ++i) {
         const Reflectance& r = reflectances[i];
         if (!(surfaces[i].radius > 0)) continue;
-        const float scale2 = 1 - std::pow(kLobeEnd, 2 / r.exponent);
-        light[i] += r.ks * (r.exponent + 2) / 2 * scale2 * glm::vec4(glm::vec3(lobe[i]), 0);
+        const float scale = lobe_scale(frame.settings, r.exponent);
+        light[i] += r.ks * (r.exponent + 2) / 2 * scale * scale * glm::vec4(glm::vec3(lobe[i]), 0);
     }
     return {};
 }

@@ -101,4 +101,33 @@ inline constexpr Option<Shadows> kShadows{{
     .cheaper = -1,
 }};
 
+/// What a node of the tree covers of a micro-buffer.
+enum class Fill : uint8_t { rays, pixels };
+inline constexpr std::array<std::string_view, 2> kFillKinds = {"rays", "pixels"};
+inline constexpr Option<Fill> kFill{{
+    .kind = OptionKind::choice,
+    .key = "fill",
+    .label = "buffers show",
+    .help = "What surfaces cover in micro-buffers: those pixels whose ray meets them, or the one at their "
+            "middle",
+    .cost = "pixels are faster and leave holes in near surfaces, through which light shines",
+    .choices = kFillKinds,
+    .defaults = {int64_t{0}, int64_t{0}, int64_t{0}},
+    .cheaper = 1,
+}};
+
+/// Which directions the micro-buffers of specular lobes have.
+enum class Warp : uint8_t { lobe, hemisphere };
+inline constexpr std::array<std::string_view, 2> kWarpKinds = {"lobe", "hemisphere"};
+inline constexpr Option<Warp> kWarp{{
+    .kind = OptionKind::choice,
+    .key = "warp",
+    .label = "reflections from",
+    .help = "Directions of the micro-buffers of specular lobes: those of the lobe, or a half space",
+    .cost = "both take as long; narrow lobes find hardly any direction of a half space",
+    .choices = kWarpKinds,
+    .defaults = {int64_t{0}, int64_t{0}, int64_t{0}},
+    .cheaper = 0,
+}};
+
 }  // namespace lucarne::gi

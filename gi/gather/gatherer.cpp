@@ -34,8 +34,10 @@ uint32_t row_for(uint32_t grid) {
     return (grid + 14) / 8 * 8;
 }
 
-Defines defines_for(uint32_t grid) {
-    return {{"LUCARNE_GRID", fmt::format("{}", grid)}, {"LUCARNE_ROW", fmt::format("{}", row_for(grid))}};
+Defines defines_for(uint32_t grid, Fill fill = Fill::rays) {
+    return {{"LUCARNE_GRID", fmt::format("{}", grid)},
+            {"LUCARNE_ROW", fmt::format("{}", row_for(grid))},
+            {"LUCARNE_FILL_PIXELS", fill == Fill::pixels ? "1" : "0"}};
 }
 
 }  // namespace
@@ -167,7 +169,7 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
     const auto [lit, glossy, sky, open] = asked(what);
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid)));
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid, fill_)));
     const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
     const size_t most = std::min(points.size(), launch.points);
     LUCARNE_TRY(device.reserve(points_, most * sizeof(GatherPoint), "gather points"));

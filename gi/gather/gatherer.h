@@ -12,6 +12,7 @@
 #include <glm/vec4.hpp>
 
 #include "gi/device/cl/cl_device.h"
+#include "gi/gather/gather_options.h"
 #include "gi/gather/gather_point.h"
 #include "gi/gather/gather_sky.h"
 #include "gi/gather/light_by_normal.h"
@@ -28,8 +29,6 @@ enum class Gathered : uint8_t { light_of_surfels, sky, both };
 class MicroBuffers {
  public:
     size_t count() const { return count_; }
-    /// The points whose buffers these are.
-    std::span<const GatherPoint> points() const { return held_; }
     /// Returns what the pixels of all buffers see (gather_point.h), in order of the points. Errors: the
     /// device failed.
     Result<std::vector<uint32_t>> seen() const;
@@ -65,6 +64,8 @@ class Gatherer {
     /// Has each point look for the sky through openings with so many rays of its own as well, until the next
     /// call or another tree comes. The openings must live until then. Null: without. Errors: device memory.
     Result<void> set_openings(ClDevice& device, const SkyOpenings* openings, uint32_t rays = 0);
+    /// Chooses what the nodes of the tree cover in the buffers of gather().
+    void set_fill(Fill fill) { fill_ = fill; }
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
     /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
     /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`
@@ -105,6 +106,7 @@ class Gatherer {
     SkyPicture sky_{};
     bool empty_ = true, glossy_ = false;
     float reach2_ = kNoReach;
+    Fill fill_ = Fill::rays;
     const SkyOpenings* openings_ = nullptr;
     uint32_t rays_to_sky_ = 0;
     float rays_over_buffer_ = 0;    ///< rays_to_sky_ over the rays of a buffer

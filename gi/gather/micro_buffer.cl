@@ -8,9 +8,14 @@
 // Nodes are opened if their radius over their distance is larger. With buffers of 24^2 whole nodes are four pixels
 // across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are opened further, and
 // so are surfaces whose discs might appear half a pixel from where they are.
+#if LUCARNE_FILL_PIXELS
+#define LARGEST (1.0f / GRID)
+#define LARGEST_THICK LARGEST
+#else
 #define LARGEST fmin(4.0f / GRID, 0.2f)
-#define THICKEST (0.7f / GRID)
 #define LARGEST_THICK fmin(2.0f / GRID, 0.1f)
+#endif
+#define THICKEST (0.7f / GRID)
 #define MOST_SMALL 4  // pixels along a side of what is drawn together with its neighbours
 #define STACK 456  // seven a level; trees of 2^32 surfels have at most 64 levels (kMedianLevel)
 #define EMPTY 0xffffffffu
@@ -243,6 +248,23 @@ void draw_small(global const WideNode* node, Children* children, int8 small, uin
         }
 }
 
+// Draws each of eight children as the pixel at its middle, if that pixel has a ray: the paper's buffers without ray
+// casting (fig. 11).
+void fill_pixels(int8 drawn, int8 columns, int8 rows, float8 distances, uint first_slot, const float4* rays,
+                 float* depths, uint* slots) {
+    for (int k = 0; k < 8; ++k) {
+        int i = ((int*)&columns)[k], j = ((int*)&rows)[k], pixel = j * ROW + i;
+        if (!((int*)&drawn)[k] || i < 0 || i >= GRID || j < 0 || j >= GRID) continue;
+        float4 ray = rays[pixel];
+        float distance = ((float*)&distances)[k];
+        uint slot = first_slot + (uint)k;
+        bool nearest = distance < depths[pixel] || (distance == depths[pixel] && slot < slots[pixel]);
+        if (dot(ray.xyz, ray.xyz) == 0.0f || !nearest) continue;
+        depths[pixel] = distance;
+        slots[pixel] = slot;
+    }
+}
+
 // Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
 // and its slot. `side` and `across` are the axes of the picture, which reaches to `scale` along them; `rays` are the
 // directions of its pixels, zero where a pixel has no ray.
@@ -284,6 +306,11 @@ void draw(global const WideNode* nodes, const Rays* rays, float3 start, float3 s
         float8 ux = (dx * side.x + dy * side.y + dz * side.z) * nearer;
         float8 uy = (dx * across.x + dy * across.y + dz * across.z) * nearer;
         float8 px = ux * c + (0.5f * GRID - 0.5f), py = uy * c + (0.5f * GRID - 0.5f);
+#if LUCARNE_FILL_PIXELS
+        fill_pixels(drawn, convert_int8_rte(px), convert_int8_rte(py), distance2 * nearer, (uint)at * 8, rays->each,
+                    depths, slots);
+        continue;
+#endif
         float8 wide = s * sqrt(fmax(1.0f - ux * ux, 0.0f)) * pixels + 0.5f;
         float8 tall = s * sqrt(fmax(1.0f - uy * uy, 0.0f)) * pixels + 0.5f;
         // Cones about the end of an axis reach to its end.

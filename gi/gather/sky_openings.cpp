@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -104,18 +105,22 @@ float distance_of_opening(const tracing::SurfelTracer& tracer, const glm::vec3& 
     return 0;
 }
 
-/// Casts the rays of a pilot and adds those that meet nothing.
-void look_for_sky(const tracing::SurfelTracer& tracer, const GatherSky& sky, const GatherPoint& pilot,
-                  const glm::vec3& start, Random random, std::vector<SkyRay>& found) {
+/// Casts the rays of a pilot and adds those that meet nothing and pass an opening. Returns how many meet
+/// nothing.
+size_t look_for_sky(const tracing::SurfelTracer& tracer, const GatherSky& sky, const GatherPoint& pilot,
+                    const glm::vec3& start, Random random, std::vector<SkyRay>& found) {
+    size_t free = 0;
     const double x = random.uniform();
     const glm::dvec2 shift(x, random.uniform());
     for (uint32_t i = 0; i < kRaysOfAPilot; ++i) {
         const glm::vec3 ray =
             tracing::cosine_power_direction(pilot.normal, 1, lattice_point(i, kRaysOfAPilot, shift));
         if (tracer.occluded_along(start, ray)) continue;
+        ++free;
         const float distance = distance_of_opening(tracer, start, ray);
         if (distance > 0) found.push_back({start + distance * ray, sky_radiance(sky, ray)});
     }
+    return free;
 }
 
 /// Rays through openings that are near each other.
@@ -163,10 +168,11 @@ SkyOpenings SkyOpenings::find(const tracing::SurfelTracer& tracer, const GatherS
     if (sky.texels.empty() || pilots.empty()) return openings;
     std::vector<glm::vec3> starts(pilots.size());
     std::vector<std::vector<SkyRay>> found(pilots.size());
+    std::vector<size_t> free(pilots.size());
     parallel_ranges(pilots.size(), kPilotsATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last && !(stop && *stop); ++i) {
             starts[i] = ray_start(tracer, pilots[i]);
-            look_for_sky(tracer, sky, pilots[i], starts[i], Random(seed, i), found[i]);
+            free[i] = look_for_sky(tracer, sky, pilots[i], starts[i], Random(seed, i), found[i]);
         }
     });
     std::vector<SkyRay> rays;
@@ -176,8 +182,10 @@ SkyOpenings SkyOpenings::find(const tracing::SurfelTracer& tracer, const GatherS
             rays.push_back(ray);
             distances.push_back(glm::distance(ray.place, starts[i]));
         }
-    const double cast = static_cast<double>(pilots.size()) * kRaysOfAPilot;
-    if (rays.empty() || static_cast<double>(rays.size()) > kWide * cast || (stop && *stop)) return openings;
+    const auto met_nothing = static_cast<double>(std::accumulate(free.begin(), free.end(), size_t{0}));
+    if (rays.empty() || met_nothing > kWide * static_cast<double>(pilots.size() * kRaysOfAPilot) ||
+        (stop && *stop))
+        return openings;
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
     const auto least = static_cast<float>(kLeastShareOfDistance * *middle);

@@ -53,7 +53,7 @@ constexpr size_t kMostSecondariesHeld = 262144;  ///< their micro-buffers take 8
 constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
 constexpr size_t kRepairsInMotion = 2048;        ///< likewise, in a frame of a motion
-constexpr size_t kPilots = 512;                  ///< primary points that look for openings to the sky
+constexpr size_t kPilots = 512;                  ///< pixels that look for openings to the sky
 constexpr uint32_t kRaysOfPrimaries = 64, kRaysOfSecondaries = 16;  ///< through openings
 
 class EnvironmentEngine final : public Engine {
@@ -328,10 +328,13 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     report(frame, 0.4);
     if (lighting_.has_sky()) {
         const TimedPass pass(frame, "openings to the sky");
-        const std::span<const GatherPoint> points = buffers_.points();
-        const size_t count = std::min(kPilots, points.size());
+        const std::vector<uint32_t> pixels = pixels_of(surfaces);
         std::vector<GatherPoint> pilots;
-        for (size_t i = 0; i < count; ++i) pilots.push_back(points[i * points.size() / count]);
+        for (size_t i = 0; i < std::min(kPilots, pixels.size()); ++i) {
+            const SurfacePoint& at = surfaces[pixels[i * pixels.size() / std::min(kPilots, pixels.size())]];
+            pilots.push_back(point_at(at.position, at.normal, at.radius, mix64(seed_ + 3, i)));
+            pilots.back().viewer = at.viewer;
+        }
         LUCARNE_ASSIGN(openings_, lighting_.find_openings(frame, pilots, seed_));
     }
     if (frame.stopped()) return {};

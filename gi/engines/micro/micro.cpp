@@ -18,10 +18,10 @@ namespace lucarne::gi {
 namespace micro {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {&kBounces.info,         &kOnlyBounce.info,     &kMicroBuffer.info,
-                                          &kGatherEvery.info,     &kRadiosityLevel.info, &kLightPoints.info,
-                                          &kPhotons.info,         &kVpls.info,           &kShadows.info,
-                                          &kLightResolution.info, &kLightSamples.info,   &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {
+    &kBounces.info,      &kOnlyBounce.info, &kMicroBuffer.info, &kGatherEvery.info, &kRadiosityLevel.info,
+    &kLightPoints.info,  &kPhotons.info,    &kVpls.info,        &kShadows.info,     &kLightResolution.info,
+    &kLightSamples.info, &kFill.info,       &kWarp.info,        &kSeed.info};
 constexpr EngineInfo kInfo{.name = "micro",
                            .label = "Final gathering",
                            .description = "final gathering of the light of all surfels, on OpenCL",

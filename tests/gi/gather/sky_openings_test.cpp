@@ -1,0 +1,177 @@
+#include "gi/gather/sky_openings.h"
+
+#include <cmath>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
+#include "gi/engines/environment/options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/gather/gather_options.h"
+#include "gi/shared/brdf.h"
+#include "gi/shared/luminance.h"
+#include "gi/tracing/scatter.h"
+#include "io/core/random.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr uint32_t kBufferRays = 200;
+
+/// A room of 4 m with a window of 40 cm in a wall.
+std::vector<Surfel> room_with_a_window() {
+    std::vector<Surfel> surfels = scenes::closed_box(4, 100, glm::vec3(0.5f));
+    std::erase_if(surfels, [](const Surfel& s) {
+        return s.position.x > 3.99f && std::abs(s.position.y - 1.5f) < .2f &&
+               std::abs(s.position.z - 2.4f) < .2f;
+    });
+    return surfels;
+}
+
+std::unique_ptr<tracing::SurfelTracer> tracer_of(std::vector<Surfel> surfels) {
+    auto tracer = tracing::SurfelTracer::create(std::move(surfels));
+    EXPECT_TRUE(tracer);
+    return tracer ? std::move(*tracer) : nullptr;
+}
+
+GatherSky even_sky(float radiance) {
+    return {.width = 1, .height = 1, .texels = {glm::vec3(radiance)}};
+}
+
+GatherPoint point_on_floor(float x, float y, uint32_t seed) {
+    return {.position = {x, y, 0}, .lift = 0.03f, .normal = kZ, .seed = seed, .axis = kZ, .scale = 1};
+}
+
+std::vector<GatherPoint> pilots_on_floor() {
+    std::vector<GatherPoint> pilots;
+    for (uint32_t i = 0; i < 256; ++i)
+        pilots.push_back(point_on_floor(0.1f + 0.24f * static_cast<float>(i % 16),
+                                        0.1f + 0.24f * static_cast<float>(i / 16), i));
+    return pilots;
+}
+
+/// Returns the part of a point's light that rays to the openings bring, and sets `own` to that of even rays.
+double light_of_openings(const SkyOpenings& openings, const tracing::SurfelTracer& tracer,
+                         const GatherPoint& point, double& own) {
+    const float rays = 32.0f / kBufferRays;
+    std::vector<float> densities(openings.spheres().size());
+    openings.find_densities(point, rays, densities);
+    double sum = 0;
+    openings.each_ray(point, densities, rays, 32,
+                      [&](const glm::vec3&, const glm::vec3& light) { sum += light.x; });
+    // As the kernel's share_of_buffer().
+    Random random(point.seed, 7);
+    own = 0;
+    for (uint32_t i = 0; i < kBufferRays; ++i) {
+        const double x = random.uniform();
+        const glm::vec3 ray = tracing::cosine_power_direction(point.normal, 1, {x, random.uniform()});
+        if (tracer.occluded_along(tracing::offset_origin(point.position, point.normal, point.lift), ray))
+            continue;
+        float all = ray.z;
+        for (size_t k = 0; k < densities.size(); ++k) {
+            const glm::vec3 middle = glm::vec3(openings.spheres()[k]) - point.position;
+            const float radius = openings.spheres()[k].w;
+            if (densities[k] > 0 &&
+                glm::dot(ray, middle) > std::sqrt(glm::dot(middle, middle) - radius * radius))
+                all += densities[k];
+        }
+        own += ray.z / all / kBufferRays;
+    }
+    return sum;
+}
+
+/// Returns what a point on the floor receives through the window, by points all over it and its frame.
+double light_of_window(const tracing::SurfelTracer& tracer, const glm::vec2& at) {
+    const GatherPoint point = point_on_floor(at.x, at.y, 0);
+    const glm::vec3 start = tracing::offset_origin(point.position, kZ, point.lift);
+    constexpr int kPoints = 300;
+    constexpr float kSize = 0.6f, kArea = kSize * kSize / (kPoints * kPoints);
+    double sum = 0;
+    for (int j = 0; j < kPoints; ++j)
+        for (int i = 0; i < kPoints; ++i) {
+            const glm::vec3 to =
+                glm::vec3(4, 1.2f, 2.1f) + kSize / kPoints * (kY * (i + 0.5f) + kZ * (j + 0.5f)) - start;
+            const float distance2 = glm::dot(to, to);
+            const glm::vec3 ray = to / std::sqrt(distance2);
+            if (!tracer.occluded_along(start, ray)) sum += ray.z * ray.x * kArea / (kPi * distance2);
+        }
+    return sum;
+}
+
+TEST(SkyOpenings, RaysOfBothKindsAddUpToTheSky) {
+    const auto tracer = tracer_of(room_with_a_window());
+    ASSERT_TRUE(tracer);
+    const GatherSky sky = even_sky(1);
+    const SkyOpenings openings = SkyOpenings::find(*tracer, sky, pilots_on_floor(), 3);
+    ASSERT_FALSE(openings.empty());
+    for (const glm::vec2 at : {glm::vec2(2.5f, 1.5f), glm::vec2(0.6f, 3.1f), glm::vec2(3.6f, 0.5f)}) {
+        double sum = 0, squares = 0, own_sum = 0;
+        constexpr int kSeeds = 400;
+        for (int i = 0; i < kSeeds; ++i) {
+            const GatherPoint point = point_on_floor(at.x, at.y, static_cast<uint32_t>(1000 + i));
+            double own = 0;
+            const double light = light_of_openings(openings, *tracer, point, own) + own;
+            sum += light / kSeeds;
+            squares += light * light / kSeeds;
+            own_sum += own / kSeeds;
+        }
+        EXPECT_NEAR(sum / light_of_window(*tracer, at), 1, 0.02) << at.x << " " << at.y;
+        EXPECT_LT(own_sum / sum, 0.3);
+        // Buffers alone would find so little of their rays: a variance of the mean over their number.
+        EXPECT_LT(squares - sum * sum, 0.2 * sum / kBufferRays);
+    }
+}
+
+TEST(SkyOpenings, NoneAreFoundWhereThereAreNoneOrTheSkyIsWide) {
+    const GatherSky sky = even_sky(1);
+    const auto closed = tracer_of(scenes::closed_box(4, 60, glm::vec3(0.5f)));
+    ASSERT_TRUE(closed);
+    EXPECT_TRUE(SkyOpenings::find(*closed, sky, pilots_on_floor(), 3).empty());
+    std::vector<Surfel> floor;
+    scenes::add_rectangle(floor, kO, 4.0f * kX, 4.0f * kY, 60, glm::vec3(0.5f));
+    const auto field = tracer_of(std::move(floor));
+    ASSERT_TRUE(field);
+    EXPECT_TRUE(SkyOpenings::find(*field, sky, pilots_on_floor(), 3).empty());
+    EXPECT_TRUE(SkyOpenings::find(*field, {}, pilots_on_floor(), 3).empty());
+    EXPECT_TRUE(SkyOpenings::find(*field, sky, {}, 3).empty());
+}
+
+class SkyOpeningsInEngines : public OnDevice {};
+
+TEST_F(SkyOpeningsInEngines, WindowLightsARoomWithLittleNoiseInOneFrame) {
+    scenes::AnalyticScene scene;
+    scene.surfels = room_with_a_window();
+    scene.environment = scenes::even_sky(1);
+    scene.camera = scenes::look({0.4f, 0.4f, 2.2f}, {2.8f, 1.6f, 0}, 0.6f, 32);
+    scene.settings.set(kOnlyBounce, 0);
+    scene.settings.set(kMicroBuffer, 8);
+    scene.settings.set(environment::kCacheSpacing, 3);
+    scene.settings.set(kGatherEvery, 1);
+    scene.settings.set(reference::kSamples, 4096);
+    const auto render = [&](std::string_view engine, uint64_t seed) {
+        scene.settings.set(kSeed, seed);
+        const auto picture = scenes::render(*device, engine, scene);
+        EXPECT_TRUE(picture) << picture.error().line();
+        return picture ? picture->radiance : std::vector<glm::vec4>{};
+    };
+    const double truth = mean_luminance(render("reference", 1));
+    for (const std::string_view engine : {"micro", "environment"}) {
+        const auto one = render(engine, 1), other = render(engine, 2);
+        EXPECT_NEAR(mean_luminance(one) / truth, 1, 0.05) << engine;
+        const auto metrics = compare_images(one, other);
+        ASSERT_TRUE(metrics);
+        EXPECT_LT(metrics->rel_mse / 2, 0.05) << engine;
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::gi
