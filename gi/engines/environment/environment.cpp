@@ -42,7 +42,7 @@ constexpr EngineInfo kInfo{
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 340 MB
 /// Places between which light is exchanged are this much farther apart than caches.
-constexpr float kCoarser = 4;
+constexpr float kCoarser = 2;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
@@ -54,7 +54,9 @@ constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonel
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
 constexpr size_t kRepairsInMotion = 2048;        ///< likewise, in a frame of a motion
 constexpr size_t kPilots = 512;                  ///< pixels that look for openings to the sky
-constexpr uint32_t kRaysOfPrimaries = 64, kRaysOfSecondaries = 16;  ///< through openings
+/// Through openings, of each point that pixels show. Those of secondary points would take as long as their
+/// buffers and gain nothing (FLIP of a loft by day .1617 and .1612 without).
+constexpr uint32_t kRaysToSky = 32;
 
 class EnvironmentEngine final : public Engine {
  public:
@@ -75,8 +77,7 @@ class EnvironmentEngine final : public Engine {
     Result<std::vector<glm::vec3>> irradiance_at(Frame& frame, std::span<const uint32_t> sides,
                                                  Gathered what);
     Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
-    Result<std::vector<LightByNormal>> shade(Gathered what, const MicroBuffers& buffers,
-                                             uint32_t rays_to_sky);
+    Result<std::vector<LightByNormal>> shade(Gathered what, const MicroBuffers& buffers);
     Result<std::vector<Cache>> gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
                                          std::span<const uint32_t> pixels, float spacing, Gathered what,
                                          std::span<glm::vec4> light);
@@ -96,6 +97,7 @@ class EnvironmentEngine final : public Engine {
     bool lit_ = false;  ///< the light that surfels send out is there: the last frame was finished
     GatherCounts lobes_;
     const SkyOpenings* openings_ = nullptr;  ///< of the frame; none: buffers find all of the sky
+    std::vector<LightByNormal> sky_;         ///< what primary points receive of it in the frame
     uint64_t seed_ = 0;
     size_t primaries_ = 0, gathering_ = 0, repaired_ = 0, reported_ = 0;
 };
@@ -215,17 +217,16 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
     LUCARNE_TRY(
         gatherer.see(lighting_.opencl(), points, kSecondarySide, seed_, secondary_buffers_, frame.stop));
     if (frame.stopped()) return irradiances;
-    LUCARNE_ASSIGN(const auto gathered, shade(what, secondary_buffers_, kRaysOfSecondaries));
+    LUCARNE_ASSIGN(const auto gathered, gatherer.shade(lighting_.opencl(), what, secondary_buffers_));
     for (size_t i = 0; i < places.size(); ++i)
         irradiances[places[i]] = kPi * gathered[i].on(points[i].normal);
     return irradiances;
 }
 
-/// Lights micro-buffers, whose points cast so many rays of their own at openings to the sky.
-Result<std::vector<LightByNormal>> EnvironmentEngine::shade(Gathered what, const MicroBuffers& buffers,
-                                                            uint32_t rays_to_sky) {
+/// Lights the micro-buffers of points that pixels show. They cast rays of their own at openings to the sky.
+Result<std::vector<LightByNormal>> EnvironmentEngine::shade(Gathered what, const MicroBuffers& buffers) {
     Gatherer& gatherer = lighting_.gatherer();
-    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, rays_to_sky));
+    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, kRaysToSky));
     LUCARNE_ASSIGN(auto light, gatherer.shade(lighting_.opencl(), what, buffers));
     LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), nullptr));
     return light;
@@ -235,7 +236,17 @@ Result<std::vector<LightByNormal>> EnvironmentEngine::shade(Gathered what, const
 Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePlace> primaries,
                                            Gathered what) {
     const TimedPass pass(frame, "caches");
-    LUCARNE_ASSIGN(const auto light, shade(what, buffers_, kRaysOfPrimaries));
+    // The sky is the same for secondary points and for pixels.
+    if (what != Gathered::light_of_surfels && sky_.empty()) {
+        LUCARNE_ASSIGN(sky_, shade(Gathered::sky, buffers_));
+    }
+    std::vector<LightByNormal> light(buffers_.count());
+    if (what != Gathered::sky) {
+        LUCARNE_ASSIGN(light,
+                       lighting_.gatherer().shade(lighting_.opencl(), Gathered::light_of_surfels, buffers_));
+    }
+    if (what != Gathered::light_of_surfels)
+        for (size_t i = 0; i < light.size(); ++i) light[i].add(sky_[i], 1);
     LUCARNE_ASSIGN(const auto nearness, buffers_.nearness());
     caches_.clear();
     std::vector<float> reaches;
@@ -269,7 +280,7 @@ Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<
         LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer], seed_,
                                              repairs_, frame.stop));
         if (frame.stopped()) break;
-        LUCARNE_ASSIGN(const auto gathered, shade(what, repairs_, kRaysOfSecondaries));
+        LUCARNE_ASSIGN(const auto gathered, shade(what, repairs_));
         for (size_t i = 0; i < gathered.size(); ++i) {
             const SurfacePoint& at = surfaces[some[i]];
             light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
@@ -397,6 +408,7 @@ Result<void> EnvironmentEngine::follow(Frame& frame) {
 Result<void> EnvironmentEngine::render(Frame& frame) {
     lighting_.begin(frame);
     openings_ = nullptr;
+    sky_.clear();
     frame.gl.radiance.clear(0);
     seed_ = mix64(frame.settings[kSeed], frame.index);
     primaries_ = gathering_ = repaired_ = reported_ = 0;
