@@ -23,6 +23,8 @@ constexpr size_t kPixelsATask = 4096, kPointsATask = 256;
 constexpr size_t kPilots = 128;
 constexpr size_t kPilotsForSky = 512;
 constexpr uint32_t kRaysToSky = 32;  ///< of each pixel that gathers, through openings
+/// Share of the time that buffers take if bright light comes by rays.
+constexpr double kBuffersShare = 0.8;
 /// Micro-buffers of specular lobes end where the lobe has fallen to this share of its peak; the rest is a
 /// thousandth of its light.
 constexpr float kLobeEnd = 1e-3f;
@@ -149,12 +151,14 @@ class LobeGather {
         }
         std::vector<glm::vec4> found(points.size());
         // Pixels that gather again come on top of those that were expected.
+        const double buffers = bright_ ? kBuffersShare : 1;
         const auto done = [&](size_t count) {
-            if (!again) report(static_cast<double>(count) / static_cast<double>(points.size()));
+            if (!again) report(buffers * static_cast<double>(count) / static_cast<double>(points.size()));
         };
         LUCARNE_TRY(gatherer_.gather(device_, what_, points, frame_.settings[kMicroBuffer], seed_, found,
                                      frame_.stop, done));
         if (bright_) add_bright(points, found);
+        if (!again && !frame_.stopped()) report(1);
         results.assign(pixels.size(), glm::vec4(0.0f));
         for (size_t i = 0; i < places.size(); ++i) results[places[i]] = found[i];
         counts_.points += points.size();

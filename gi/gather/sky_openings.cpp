@@ -152,7 +152,10 @@ std::vector<Cluster> clusters_of(std::vector<SkyRay> rays) {
         const float middle = 0.5f * (largest->low[axis] + largest->high[axis]);
         std::vector<SkyRay> below, above;
         for (const SkyRay& ray : largest->rays) (ray.place[axis] < middle ? below : above).push_back(ray);
-        if (below.empty() || above.empty()) break;  // neighbouring floats
+        if (below.empty() || above.empty()) {  // neighbouring floats
+            largest->high = largest->low;
+            continue;
+        }
         *largest = Cluster(std::move(below));
         clusters.emplace_back(std::move(above));
     }

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "gi/shared/lobe.h"
 #include "gi/tracing/light_sampling.h"
 
 namespace lucarne::gi::tracing {
@@ -15,13 +16,9 @@ glm::vec3 mirror(const glm::vec3& normal, const glm::vec3& out) {
     return normal * (2.0f * glm::dot(normal, out)) - out;
 }
 
-float mean(const glm::vec3& v) {
-    return (v.x + v.y + v.z) / 3.0f;
-}
-
 /// Returns the share of draws that take the specular lobe; negative if nothing is reflected.
 float specular_share(const Reflectance& surface) {
-    const float total = mean(surface.kd) + surface.ks;
+    const float total = mean_colour(surface.kd) + surface.ks;
     return total > 0 ? surface.ks / total : -1.0f;
 }
 
