@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gi/shared/environment.h"
 #include "gi/shared/luminance.h"
 
 namespace lucarne::gi {
@@ -84,6 +85,13 @@ double light_beyond(const Environment& sky, double most) {
 }
 
 }  // namespace
+
+glm::vec3 GatherSky::radiance(const glm::vec3& direction) const {
+    const glm::vec2 at = environment_place(direction, rotation);
+    const auto column = static_cast<uint32_t>(at.x * static_cast<float>(width));
+    const auto row = static_cast<uint32_t>(at.y * static_cast<float>(height));
+    return texels[size_t{std::min(row, height - 1)} * width + std::min(column, width - 1)];
+}
 
 GatherSky gather_sky(const std::shared_ptr<const Environment>& environment) {
     if (!environment) return {};

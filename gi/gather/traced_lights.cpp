@@ -8,13 +8,21 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "gi/bounce_options.h"
+#include "gi/gather/gather_options.h"
+#include "gi/gl_frame.h"
 #include "gi/lighting/area_points.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_options.h"
 #include "gi/lighting/light_samples.h"
 #include "gi/tracing/light_sampling.h"
+#include "io/core/parallel.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace {
+
+constexpr size_t kPixelsATask = 1024;
 
 glm::dvec2 random_square(Random& random) {
     const double x = random.uniform();
@@ -75,6 +83,28 @@ glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& 
         add(drawn.direction, drawn.flux * share, std::numeric_limits<float>::infinity());
     }
     return sum;
+}
+
+bool traces_shadows(const Frame& frame) {
+    return frame.settings[kShadows] == Shadows::rays && !frame.moving;
+}
+
+void add_traced_light(Frame& frame, const tracing::SurfelTracer& tracer, const SkyDirections& sky) {
+    const TracedLights lights(tracer, frame.lights, sky, frame.settings[kLightSamples]);
+    const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
+    auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
+    const std::vector<Material> materials = device_materials(frame.materials);
+    const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
+    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last && !frame.stopped(); ++i) {
+            const SurfacePoint& at = surfaces[i];
+            if (!(at.radius > 0)) continue;
+            const Reflectance surface =
+                make_reflectance(materials[at.material % materials.size()], at.albedo);
+            radiance[i] += glm::vec4(lights.reflected(at, surface, mix64(~seed, i)), 0);
+        }
+    });
+    if (!frame.stopped()) upload_radiance(frame, radiance);
 }
 
 }  // namespace lucarne::gi

@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "gi/frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/sky_directions.h"
 #include "gi/shared/brdf.h"
@@ -32,5 +33,12 @@ class TracedLights {
     const SkyDirections& sky_;
     uint32_t samples_ = 1;  ///< of each light with a size
 };
+
+/// Whether the frame asks for shadows by rays: while anything moves, maps are faster, which stay.
+bool traces_shadows(const Frame& frame);
+
+/// Adds the first reflection of the frame's lights and of `sky` to the picture, with shadows by rays. Leaves
+/// the picture as it is if the frame is given up. Waits for the device.
+void add_traced_light(Frame& frame, const tracing::SurfelTracer& tracer, const SkyDirections& sky);
 
 }  // namespace lucarne::gi

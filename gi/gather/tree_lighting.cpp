@@ -3,26 +3,18 @@
 #include <string>
 #include <utility>
 
-#include "gi/bounce_options.h"
 #include "gi/gather/gather_options.h"
 #include "gi/gather/traced_lights.h"
 #include "gi/gather/vpl_exchange.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/light_options.h"
-#include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
-#include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace {
 
-constexpr size_t kSlotsATask = 65536, kPixelsATask = 1024;
-
-/// Whether shadows are found by rays: while the camera moves, maps are faster, which stay.
-bool traces_shadows(const Frame& frame) {
-    return frame.settings[kShadows] == Shadows::rays && !frame.moving;
-}
+constexpr size_t kSlotsATask = 65536;
 
 }  // namespace
 
@@ -185,30 +177,14 @@ Result<void> TreeLighting::add_direct(Frame& frame) {
     if (frame.stopped()) return {};
     const TimedPass pass(frame, "direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, background_, true));
-    if (traces_shadows(frame)) return add_traced(frame);
+    if (traces_shadows(frame)) {
+        add_traced_light(frame, *traced_->tracer, bright_);
+        return {};
+    }
     for (const LightView& view : views_) {
         LUCARNE_ASSIGN(const GBuffer* seen, light_gbuffers_.look(frame.gl.device, view));
         LUCARNE_TRY(add_light(frame, materials_, view, *seen));
     }
-    return {};
-}
-
-Result<void> TreeLighting::add_traced(Frame& frame) {
-    const TracedLights lights(*traced_->tracer, frame.lights, bright_, frame.settings[kLightSamples]);
-    const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
-    auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
-    const std::vector<Material> materials = device_materials(frame.materials);
-    const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
-    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last && !frame.stopped(); ++i) {
-            const SurfacePoint& at = surfaces[i];
-            if (!(at.radius > 0)) continue;
-            const Reflectance surface =
-                make_reflectance(materials[at.material % materials.size()], at.albedo);
-            radiance[i] += glm::vec4(lights.reflected(at, surface, mix64(~seed, i)), 0);
-        }
-    });
-    if (!frame.stopped()) upload_radiance(frame, radiance);
     return {};
 }
 

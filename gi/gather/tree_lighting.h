@@ -77,8 +77,6 @@ class TreeLighting {
                           std::vector<SideLight>& light);
     /// Makes the tree and traced_. Errors: Embree's, a device failed.
     Result<void> trace_tree(Frame& frame);
-    /// Adds the first reflection of the lights, by rays; trace_tree() has to come first.
-    Result<void> add_traced(Frame& frame);
     /// Gives the gatherer this light.
     Result<void> set_slots(std::span<const SideLight> slots, const SideLobes& lobes);
 

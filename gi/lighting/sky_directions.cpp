@@ -36,13 +36,12 @@ glm::vec3 toward(double z, double u, double rotation) {
     return {sine * std::sin(turns), sine * std::cos(turns), z};
 }
 
-/// Returns the direction at (u, v) in [0, 1)^2 of a cell of the sky's grid, even over its solid angle.
-glm::vec3 in_cell(uint32_t cell, double u, double v) {
+}  // namespace
+
+glm::vec3 sky_direction(uint32_t cell, double u, double v) {
     const double row = cell / kSkyColumns + v;
     return toward(1 - 2 * row / kSkyRows, (cell % kSkyColumns + u) / kSkyColumns, 0);
 }
-
-}  // namespace
 
 SkyDirections::SkyDirections(std::shared_ptr<const Environment> environment)
     : environment_(std::move(environment)) {
@@ -101,7 +100,7 @@ glm::vec3 SkyDirections::draw_by_luminance(const glm::dvec2& point) const {
 glm::vec3 SkyDirections::draw_favoured(const glm::dvec2& point) const {
     double within = point.y;
     const uint32_t cell = take(favoured_, within);
-    return in_cell(cell, point.x, within);
+    return sky_direction(cell, point.x, within);
 }
 
 void SkyDirections::favour(std::span<const float> importance) {
@@ -112,8 +111,8 @@ void SkyDirections::favour(std::span<const float> importance) {
         double bright = 0;
         if (importance[cell] > 0)
             for (uint32_t probe = 0; probe < kProbes * kProbes; ++probe)
-                bright += luminance(glm::dvec3(environment_->radiance(
-                    in_cell(cell, (probe % kProbes + .5) / kProbes, (probe / kProbes + .5) / kProbes))));
+                bright += luminance(glm::dvec3(environment_->radiance(sky_direction(
+                    cell, (probe % kProbes + .5) / kProbes, (probe / kProbes + .5) / kProbes))));
         // The root, because what matters little to the whole picture matters to its dark parts.
         sum += bright * std::sqrt(std::max(importance[cell], 0.0f));
         favoured_.push_back(sum);

@@ -12,6 +12,9 @@
 
 namespace lucarne::gi {
 
+/// Returns the direction at (u, v) in [0, 1)^2 of a cell of sky_grid.h, even over its solid angle.
+glm::vec3 sky_direction(uint32_t cell, double u, double v);
+
 /// Draws directions of an environment in proportion to its luminance: even points of a square become an even
 /// sample of its light. In a room, most of the sky lights the roof only, so some directions can be favoured.
 class SkyDirections {

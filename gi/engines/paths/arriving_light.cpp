@@ -84,13 +84,22 @@ ArrivingLight::ArrivingLight(std::shared_ptr<const PathsBake> bake) : bake_(std:
     });
 }
 
-void ArrivingLight::set(std::span<const glm::vec3> radiosity, std::span<const Material> materials) {
+void ArrivingLight::set(std::span<const glm::vec3> radiosity, const PointSky* sky,
+                        std::span<const Material> materials) {
     const LightPaths& paths = bake_->paths;
     light_.assign(paths.points.size() * kCells, glm::vec3(0.0f));
     parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
-        for (size_t ray = begin * paths.rays_a_point; ray < end * paths.rays_a_point; ++ray)
-            if (paths.rays[ray] != kNone)
-                light_[ray / paths.rays_a_point * kCells + cell_of_[ray]] += radiosity[paths.rays[ray]];
+        for (size_t point = begin; point < end; ++point) {
+            size_t open = 0;
+            for (size_t ray = point * paths.rays_a_point; ray < (point + 1) * paths.rays_a_point; ++ray) {
+                glm::vec3& light = light_[point * kCells + cell_of_[ray]];
+                if (paths.rays[ray] == kNone) {
+                    if (sky) light += kPi * sky->radiance(point)[open++];
+                } else if (!radiosity.empty()) {
+                    light += radiosity[paths.rays[ray]];
+                }
+            }
+        }
     });
     for (const Material& material : materials) {
         const Reflectance r = make_reflectance(material, glm::vec3(0.0f));

@@ -11,6 +11,7 @@
 
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/interpolation.h"
+#include "gi/engines/paths/point_sky.h"
 #include "gi/shared/brdf.h"
 
 namespace lucarne::gi::paths {
@@ -38,8 +39,9 @@ class ArrivingLight {
     static constexpr float kLargestExponent = kCells / 4;
 
     explicit ArrivingLight(std::shared_ptr<const PathsBake> bake);
-    /// Takes the radiosity of all groups, W/m^2, and notes which lobes are asked for.
-    void set(std::span<const glm::vec3> radiosity, std::span<const Material> materials);
+    /// Takes the radiosity of all groups, W/m^2 (empty: they are dark), and the light of a sky (null: none),
+    /// and notes which lobes are asked for.
+    void set(std::span<const glm::vec3> radiosity, const PointSky* sky, std::span<const Material> materials);
 
     /// Returns the radiance that a surface reflects by its lobe in the direction `to`. `about`: its gathering
     /// points, whose mean irradiance is `irradiance`, W/m^2. The material must be one of set().

@@ -74,9 +74,9 @@ inline constexpr Option<Transport> kTransport{{
     .keeps = true,
 }};
 
-/// How the sky lights surfaces, before their light bounces. Pixels see it by light views.
+/// How the sky lights surfaces.
 enum class SkyLight : uint8_t {
-    links,     ///< by the links that leave the scene: smooth in one frame
+    links,     ///< by links and gathering rays that leave the scene: smooth in one frame
     parallel,  ///< by parallel lights in the directions of the frame's light views, as the paper
 };
 inline constexpr std::array<std::string_view, 2> kSkyLights = {"links", "parallel"};
@@ -84,7 +84,8 @@ inline constexpr Option<SkyLight> kSkyLight{{
     .kind = OptionKind::choice,
     .key = "sky_light",
     .label = "sky light",
-    .help = "Bounced light of the sky by links that see it, or by the parallel lights of the light views",
+    .help =
+        "Light of the sky by links and gathering rays that see it, or by the parallel lights of light views",
     .cost = "parallel lights are what the paper describes; they differ from frame to frame",
     .choices = kSkyLights,
     .defaults = {int64_t{0}, int64_t{0}, int64_t{0}},

@@ -18,9 +18,12 @@
 #include "gi/engines/paths/native/grid_light.h"
 #include "gi/engines/paths/options.h"
 #include "gi/engines/paths/pixel_points.h"
+#include "gi/engines/paths/point_sky.h"
 #include "gi/engines/paths/relight.h"
+#include "gi/engines/paths/sky_rays.h"
 #include "gi/gather/gather_options.h"
 #include "gi/gather/gather_sky.h"
+#include "gi/gather/traced_lights.h"
 #include "gi/gather/upsample.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
@@ -29,15 +32,17 @@
 #include "gi/lighting/light_options.h"
 #include "gi/native/reflectance.h"
 #include "gi/shared/brdf.h"
+#include "gi/tracing/surfel_tracer.h"
+#include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace paths {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info,  &kPointSpacing.info,
-                                          &kGatherRays.info,   &kEntryPoints.info, &kTransport.info,
-                                          &kSkyLight.info,     &kGatherEvery.info, &kLightResolution.info,
-                                          &kLightSamples.info, &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {&kBounces.info,         &kOnlyBounce.info,   &kPointSpacing.info,
+                                          &kGatherRays.info,      &kEntryPoints.info,  &kTransport.info,
+                                          &kSkyLight.info,        &kGatherEvery.info,  &kShadows.info,
+                                          &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "paths",
                            .label = "Light paths in advance",
                            .description = "light paths computed in advance: lamps move with all bounces",
@@ -66,6 +71,10 @@ class PathsEngine final : public Engine {
         std::vector<Light> lights;  ///< of the views
         bool operator==(const Basis&) const = default;
     };
+    Result<void> add_direct(Frame& frame, const std::vector<LightView>& views, bool any_state);
+    const SkyDirections& sky_directions(const EngineSettings& settings) const;
+    const PointSky* point_sky(const EngineSettings& settings);
+    Result<void> bounce(Frame& frame, const std::vector<LightView>& views, bool any_state);
     Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const ArrivingLight* arriving_light(Frame& frame, std::span<const Material> materials);
     void add_by_grid(const Frame& frame, std::span<const Material> materials,
@@ -77,13 +86,19 @@ class PathsEngine final : public Engine {
     Buffer materials_;
     Sky sky_;
     GatherSky even_sky_;
-    std::optional<uint64_t> even_sky_of_;  ///< revision of the environment that it is made from
+    SkyDirections bright_sky_;             ///< what few rays would miss of it
+    std::optional<uint64_t> even_sky_of_;  ///< revision of the environment that both are made from
+    std::optional<PointSky> point_sky_;    ///< even_sky_ at the points of the bake, once they show it
+    std::optional<uint64_t> point_sky_of_;
     LightGBuffers light_gbuffers_;
-    uint64_t light_index_ = 0;  ///< Frame::index by which lights with a size are sampled
+    uint64_t light_index_ = 0;                       ///< Frame::index by which lights with a size are sampled
+    std::unique_ptr<tracing::SurfelTracer> tracer_;  ///< of the light cut, once shadows ask for it
+    uint64_t tracer_of_ = 0;                         ///< revision of that cut
     EntryLight entry_light_;
     std::unique_ptr<Relight> relight_;
     Basis light_of_;
     std::vector<glm::vec3> irradiance_;      ///< at gathering points; empty: not known
+    std::vector<glm::vec3> sky_irradiance_;  ///< likewise, what comes straight from the sky; empty: nothing
     std::optional<ArrivingLight> arriving_;  ///< for glossy surfaces
     bool arriving_is_old_ = true;
     PixelPoints pixel_points_;
@@ -98,6 +113,8 @@ Result<void> PathsEngine::prepare(Frame& frame) {
         relight_.reset();
     } else if (!relight_ || &relight_->bake() != bake) {
         relight_ = std::make_unique<Relight>(bake->shared_from_this());
+        point_sky_.reset();
+        point_sky_of_.reset();
         irradiance_.clear();
         arriving_.reset();
         pixel_points_ = {};
@@ -105,43 +122,99 @@ Result<void> PathsEngine::prepare(Frame& frame) {
     LUCARNE_TRY(upload_sky(frame, sky_));
     if (even_sky_of_ != scene_.environment) {
         even_sky_ = gather_sky(frame.environment);
+        bright_sky_ = SkyDirections(even_sky_.bright);
         even_sky_of_ = scene_.environment;
     }
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }
 
-/// Brings the light at the gathering points up to date.
-Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& views, bool any_state) {
-    const EngineSettings& s = frame.settings;
-    // What few links would miss needs views.
-    const bool by_links = s[kSkyLight] == SkyLight::links && !even_sky_.bright;
-    Basis basis{scene_, cuts_, {}};
-    std::vector<LightView> entering_views;
-    for (const LightView& view : views) {
-        if (by_links && view.of_sky) continue;
-        entering_views.push_back(view);
-        basis.lights.push_back(view.light);
+/// Adds the first reflection of the lights. `any_state`: maps of an earlier state of their cuts will do.
+Result<void> PathsEngine::add_direct(Frame& frame, const std::vector<LightView>& views, bool any_state) {
+    Device& device = frame.gl.device;
+    if (traces_shadows(frame)) {
+        if (!tracer_ || tracer_of_ != cuts_.light) {
+            const TimedPass pass(frame, "surfels for tracing");
+            tracer_.reset();
+            LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
+            tracer_of_ = cuts_.light;
+        }
+        timed(frame, "direct light",
+              [&] { add_traced_light(frame, *tracer_, sky_directions(frame.settings)); });
+        return {};
     }
-    // In motion nodes arrive all the time, and light of a moment ago will do.
-    if (any_state) basis.cuts = light_of_.cuts;
-    if (!irradiance_.empty() && light_of_ == basis) return {};
-    basis.cuts = cuts_;
-    irradiance_.clear();
+    for (const LightView& from : views) {
+        if (frame.stopped()) return {};
+        LUCARNE_ASSIGN(const GBuffer* seen, timed(frame, "light G-buffer", [&] {
+                           return any_state ? light_gbuffers_.look_at_any_state(device, from)
+                                            : light_gbuffers_.look(device, from);
+                       }));
+        LUCARNE_TRY(timed(frame, "direct light", [&] { return add_light(frame, materials_, from, *seen); }));
+    }
+    return {};
+}
+
+/// Returns the part of the sky that lights by its directions: all of it, unless rays of the bake see the
+/// rest.
+const SkyDirections& PathsEngine::sky_directions(const EngineSettings& settings) const {
+    return relight_ && settings[kSkyLight] == SkyLight::links ? bright_sky_ : sky_.directions;
+}
+
+/// Returns the sky that gathering points see directly; null if they see none.
+const PointSky* PathsEngine::point_sky(const EngineSettings& settings) {
+    if (!relight_ || settings[kSkyLight] != SkyLight::links || even_sky_.texels.empty() ||
+        !wants_direct(settings))
+        return nullptr;
+    if (!point_sky_) point_sky_.emplace(relight_->shared_bake());
+    if (point_sky_of_ != scene_.environment) {
+        point_sky_->set(even_sky_);
+        point_sky_of_ = scene_.environment;
+    }
+    return &*point_sky_;
+}
+
+/// Sets the light of all groups.
+Result<void> PathsEngine::bounce(Frame& frame, const std::vector<LightView>& views, bool any_state) {
+    const EngineSettings& s = frame.settings;
     std::vector<glm::vec3> entering;
     {
         const TimedPass pass(frame, "entry points");
         LUCARNE_TRY(entry_light_.set_entries(frame, relight_->shared_bake()));
-        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, entering_views, light_gbuffers_, any_state));
+        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, views, light_gbuffers_, any_state));
     }
     if (frame.stopped()) return {};
     const bool only = s[kOnlyBounce] >= 0;
     const auto last = only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces];
     timed(frame, "photon energies", [&] {
-        relight_->enter(device_materials(frame.materials), entering, by_links ? &even_sky_ : nullptr);
+        relight_->enter(device_materials(frame.materials), entering,
+                        s[kSkyLight] == SkyLight::links ? &even_sky_ : nullptr);
     });
     timed(frame, "bounces", [&] { relight_->bounce({only ? last : 1, last}, s[kTransport]); });
-    irradiance_ =
-        timed(frame, "final gathering", [&] { return smooth(relight_->bake(), relight_->gather()); });
+    return {};
+}
+
+/// Brings the light at the gathering points up to date.
+Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& views, bool any_state) {
+    Basis basis{scene_, cuts_, {}};
+    for (const LightView& view : views) basis.lights.push_back(view.light);
+    // In motion nodes arrive all the time, and light of a moment ago will do.
+    if (any_state) basis.cuts = light_of_.cuts;
+    if (!irradiance_.empty() && light_of_ == basis) return {};
+    basis.cuts = cuts_;
+    irradiance_.clear();
+    const bool indirect = wants_indirect(frame.settings);
+    if (indirect) LUCARNE_TRY(bounce(frame, views, any_state));
+    if (frame.stopped()) return {};
+    const TimedPass pass(frame, "final gathering");
+    const PointSky* sky = point_sky(frame.settings);
+    std::vector<glm::vec3> light =
+        indirect ? relight_->gather()
+                 : std::vector<glm::vec3>(relight_->bake().paths.points.size(), glm::vec3(0.0f));
+    irradiance_ = smooth(relight_->bake(), light);
+    sky_irradiance_.clear();
+    if (sky) {
+        sky_irradiance_ = smooth(relight_->bake(), sky->irradiance());
+        for (size_t i = 0; i < irradiance_.size(); ++i) irradiance_[i] += sky_irradiance_[i];
+    }
     arriving_is_old_ = true;
     light_of_ = std::move(basis);
     return {};
@@ -152,7 +225,11 @@ const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const M
     if (std::ranges::none_of(materials, [](const Material& m) { return m.diffuse.w > 0; })) return nullptr;
     if (!arriving_) arriving_.emplace(relight_->shared_bake());
     if (std::exchange(arriving_is_old_, false))
-        timed(frame, "light by direction", [&] { arriving_->set(relight_->radiosity(), materials); });
+        timed(frame, "light by direction", [&] {
+            const std::span radiosity =
+                wants_indirect(frame.settings) ? relight_->radiosity() : std::span<const glm::vec3>();
+            arriving_->set(radiosity, point_sky(frame.settings), materials);
+        });
     return &*arriving_;
 }
 
@@ -192,8 +269,12 @@ void PathsEngine::add_indirect(Frame& frame) {
     const TimedPass pass(frame, "interpolation");
     const std::vector<GBufferTexel> texels = download_gbuffer(frame);
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(texels.size());
-    // Lobes need the points of each pixel.
-    const uint32_t step = glossy ? 1 : frame.settings[kGatherEvery];
+    std::optional<SkyRays> sky_rays;
+    if (traces_shadows(frame) && !sky_irradiance_.empty())
+        sky_rays.emplace(*tracer_, even_sky_, *point_sky_, sky_irradiance_);
+    const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
+    // Lobes and rays need the points of each pixel.
+    const uint32_t step = glossy || sky_rays ? 1 : frame.settings[kGatherEvery];
     pixel_points_.begin(bake, frame.camera, texels, frame.bake_offset, step);
     if (step > 1) {
         add_by_grid(frame, materials, texels, step, radiance);
@@ -201,9 +282,10 @@ void PathsEngine::add_indirect(Frame& frame) {
         const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
         pixel_points_.visit(
             PixelPoints::List::grid, surfaces, [&](size_t i, std::span<const PointShare> about) {
-                if (about.empty()) return;
+                if (about.empty() || frame.stopped()) return;
                 const SurfacePoint& at = surfaces[i];
-                const glm::vec3 irradiance = irradiance_of(about, irradiance_);
+                glm::vec3 irradiance = irradiance_of(about, irradiance_);
+                if (sky_rays) irradiance += sky_rays->correction(at, about, mix64(~seed, i));
                 const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
                 glm::vec3 reflected = r.kd / kPi * irradiance;
                 if (glossy && r.ks > 0)
@@ -218,28 +300,20 @@ void PathsEngine::add_indirect(Frame& frame) {
 Result<void> PathsEngine::render(Frame& frame) {
     frame.gl.radiance.clear(0);
     const EngineSettings& s = frame.settings;
-    const bool direct = wants_direct(s), indirect = wants_indirect(s) && relight_;
+    const bool direct = wants_direct(s), at_points = relight_ && (wants_indirect(s) || point_sky(s));
     alone_ = 0;
-    if (!direct && !indirect) return {};
+    if (!direct && !at_points) return {};
     if (direct)
         LUCARNE_TRY(timed(frame, "emission", [&] { return add_own_light(frame, materials_, sky_, false); }));
     // In motion shadows may be those of a moment ago; they are renewed as far as the time goes.
     const bool in_parts = frame.moving && !frame.light_budget.whole();
     if (!in_parts) light_index_ = frame.index;
-    const std::vector<LightView> views = light_views(frame, sky_.directions, light_index_);
+    const std::vector<LightView> views = light_views(frame, sky_directions(s), light_index_);
     Device& device = frame.gl.device;
     light_gbuffers_.begin(device, views, views.size());
     if (in_parts) LUCARNE_TRY(light_gbuffers_.renew(frame, views));
-    for (const LightView& from : views) {
-        if (!direct) break;
-        if (frame.stopped()) return {};
-        LUCARNE_ASSIGN(const GBuffer* seen, timed(frame, "light G-buffer", [&] {
-                           return in_parts ? light_gbuffers_.look_at_any_state(device, from)
-                                           : light_gbuffers_.look(device, from);
-                       }));
-        LUCARNE_TRY(timed(frame, "direct light", [&] { return add_light(frame, materials_, from, *seen); }));
-    }
-    if (!indirect) return {};
+    if (direct) LUCARNE_TRY(add_direct(frame, views, in_parts));
+    if (!at_points || frame.stopped()) return {};
     LUCARNE_TRY(relight(frame, views, in_parts));
     if (frame.stopped() || irradiance_.empty()) return {};
     add_indirect(frame);

@@ -6,7 +6,6 @@
 #include <glm/vec4.hpp>
 
 #include "gi/shared/brdf.h"
-#include "gi/shared/environment.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
 
@@ -45,13 +44,8 @@ std::vector<glm::vec3> Relight::light_of_sky(const GatherSky& sky) const {
     parallel_ranges(arriving.size(), kGroupsATask, [&](size_t begin, size_t end) {
         for (size_t origin = begin; origin < end; ++origin) {
             glm::vec3 sum(0.0f);
-            for (uint32_t i = links.first_open[origin]; i < links.first_open[origin + 1]; ++i) {
-                const glm::vec2 at = environment_place(decode_octahedral(links.open[i]), sky.rotation);
-                const auto column = static_cast<uint32_t>(at.x * static_cast<float>(sky.width));
-                const auto row = static_cast<uint32_t>(at.y * static_cast<float>(sky.height));
-                sum +=
-                    sky.texels[std::min(row, sky.height - 1) * sky.width + std::min(column, sky.width - 1)];
-            }
+            for (uint32_t i = links.first_open[origin]; i < links.first_open[origin + 1]; ++i)
+                sum += sky.radiance(decode_octahedral(links.open[i]));
             arriving[origin] = kPi / static_cast<float>(kLinks) * sum;
         }
     });

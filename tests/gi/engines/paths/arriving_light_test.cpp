@@ -49,7 +49,7 @@ TEST(ArrivingLight, EvenLightIsReflectedByTheLobesAlbedo) {
     const std::vector<glm::vec3> radiosity(bake->paths.groups.count(), glm::vec3(kPi, 2 * kPi, 0));
     const std::vector<Material> materials = {material(.5f, .3f, 12)};
     paths::ArrivingLight light(bake);
-    light.set(radiosity, materials);
+    light.set(radiosity, nullptr, materials);
     const Reflectance surface = make_reflectance(materials[0], glm::vec3(.5f));
     const paths::LobeAlbedo albedo(12);
     paths::PointFinder finder(*bake);

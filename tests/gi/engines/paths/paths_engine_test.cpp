@@ -6,6 +6,7 @@
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
 #include "gi/engines/paths/options.h"
+#include "gi/engines/reference/options.h"
 #include "gi/gather/gather_options.h"
 #include "gi/registry.h"
 #include "tests/gi/engines/lit_scene.h"
@@ -198,6 +199,33 @@ TEST_F(PathsEngine, TheSkyLightsAnOpenBoxAsItsLinksSay) {
     options_.settings.set(paths::kSkyLight, paths::SkyLight::links);
     options_.index = 7;
     EXPECT_EQ(draw().radiance, by_links.radiance) << "it does not differ from frame to frame";
+}
+
+TEST_F(PathsEngine, PixelsSeeTheSkyByGatheringRaysAndWherePointsDisagreeByTheirOwn) {
+    auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
+    std::erase_if(surfels, [](const Surfel& s) { return s.normal.z < -.5f; });
+    cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
+    options_.bake = nullptr;
+    options_.lights.clear();
+    options_.environment = scenes::even_sky(1);
+    options_.settings.set(kOnlyBounce, 0);
+    options_.settings.set(reference::kSamples, 512);
+    const Lit lit = draw(), exact = light_up(*device, **make_engine("reference"), *cloud_, camera_, options_);
+    const ImageMetrics error = compare_images(lit.radiance, exact.radiance).value();
+    EXPECT_LT(std::abs(error.luminance_error), .02);
+    EXPECT_LT(error.rel_mse, .025);
+    options_.bake = lit.bake;
+    options_.moving = true;
+    const Lit in_motion = draw();
+    options_.index = 7;
+    EXPECT_EQ(draw().radiance, in_motion.radiance) << "it does not differ from frame to frame";
+    options_.moving = false;
+    options_.environment = scenes::even_sky(2);
+    EXPECT_EQ(draw().radiance, draw_anew().radiance);
+    options_.materials[1] = scenes::material(.5f, .4f, 20);
+    EXPECT_EQ(draw().radiance, draw_anew().radiance) << "lobes reflect it as well";
+    options_.settings.set(kOnlyBounce, -1);
+    EXPECT_EQ(draw().radiance, draw_anew().radiance) << "with what is reflected further";
 }
 
 TEST_F(PathsEngine, LittleSkyLeaksIntoASealedRoomWithDiscsThroughItsWalls) {
