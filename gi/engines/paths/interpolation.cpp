@@ -25,7 +25,6 @@ constexpr size_t kPlacesAPiece = 256;
 /// Finds the points whose normals turn by less than this. Returns whether their weights suffice.
 bool PointFinder::share_within(float turn, const glm::vec3& position, const glm::vec3& normal) {
     shares_.clear();
-    float weights = 0;
     bake_.near.visit_lists(position, [&](uint32_t first, uint32_t count) {
         const std::span blocks = std::span(bake_.near_blocks)
                                      .subspan(first / PointCells::kListed,
@@ -39,12 +38,24 @@ bool PointFinder::share_within(float turn, const glm::vec3& position, const glm:
             if (error2 >= 1 || point.is_hidden(position)) continue;
             if (turn == kAnyTurn && glm::dot(position - point.position, point.normal) < 0) continue;
             shares_.push_back({found_[i], 1 - std::sqrt(std::max(error2, 0.0f))});
-            weights += shares_.back().share;
         }
     });
+    drop_hidden();
+    float weights = 0;
+    for (const PointShare& s : shares_) weights += s.share;
     if (!(weights > kLeastSum)) return false;
     for (PointShare& s : shares_) s.share /= weights;
     return true;
+}
+
+/// Drops points that walls hide from the one with the largest share. A place has no walls of its own, and
+/// those of a point in the open that end near it do not hide all places in the room behind them.
+void PointFinder::drop_hidden() {
+    const auto most = std::ranges::max_element(shares_, {}, &PointShare::share);
+    if (most == shares_.end()) return;
+    const std::vector<GatheringPoint>& points = bake_.paths.points;
+    const GatheringPoint& own = points[most->point];
+    std::erase_if(shares_, [&](const PointShare& s) { return own.is_hidden(points[s.point].position); });
 }
 
 bool PointFinder::find_within(float turn, const glm::vec3& position, const glm::vec3& normal) {

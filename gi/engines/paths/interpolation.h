@@ -29,6 +29,7 @@ class PointFinder {
  private:
     bool find_within(float turn, const glm::vec3& position, const glm::vec3& normal);
     bool share_within(float turn, const glm::vec3& position, const glm::vec3& normal);
+    void drop_hidden();
 
     const PathsBake& bake_;
     std::vector<PointShare> shares_;
