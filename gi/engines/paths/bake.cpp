@@ -157,7 +157,7 @@ constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info,
 
 const Precomputes kPathsPrecomputes{
     .make = []() -> std::unique_ptr<Precomputation> { return std::make_unique<PathsPrecomputation>(); },
-    .version = 3,
+    .version = 4,
     .options = kOfBake};
 
 }  // namespace lucarne::gi::paths

@@ -1,6 +1,7 @@
 #include "gi/engines/paths/gathering_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -19,6 +20,11 @@ constexpr float kSpawnTurn = 0.12325684f;  // root of 1 - cos
 constexpr size_t kFewestAtOnce = 16, kMostAtOnce = 512, kCandidatesAtOnce = 65536;
 /// Candidates of a step, in those that the step before would have needed.
 constexpr double kMoreTests = 1.1;
+/// Places are narrow where the harmonic mean length of so many rays is below so many radii of the surfel:
+/// under the rims of discs that stick out over them, for example, whose light is not that of the places
+/// about.
+constexpr size_t kRaysOfTest = 16;
+constexpr float kNarrow = 2;
 constexpr size_t kTestsAPiece = 1024, kTracedAPiece = 8, kNormalsAPiece = 16384;
 
 }  // namespace
@@ -85,6 +91,12 @@ bool PointChooser::is_covered(const glm::vec3& position, const glm::vec3& normal
     });
 }
 
+bool PointChooser::is_narrow(Side side, const glm::vec3& normal) const {
+    const Surfel& s = tracer_.surfels()[side / 2];
+    std::array<RayHit, kRaysOfTest> hits;
+    return trace_rays(tracer_, {s.position, normal, s.radius}, seed_, side, hits) < kNarrow * s.radius;
+}
+
 bool PointChooser::restore(State state) {
     if (state.next > order_.size() || state.hits.size() != state.points.size() * rays_ ||
         state.points.size() > kMostPoints || !(state.spacing.least >= state_.spacing.least) ||
@@ -123,7 +135,8 @@ bool PointChooser::advance() {
         for (size_t i = begin; i < end; ++i) {
             const Side side = order_[first + i];
             normals[i] = side % 2 ? -normals_[side / 2] : normals_[side / 2];
-            covered[i] = is_covered(tracer_.surfels()[side / 2].position, normals[i]);
+            covered[i] =
+                is_covered(tracer_.surfels()[side / 2].position, normals[i]) || is_narrow(side, normals[i]);
         }
     });
     std::vector<size_t> passed;

@@ -57,8 +57,9 @@ struct Spacing {
 };
 
 /// Chooses gathering points and traces their rays. Candidates are the sides of all surfels in an order that
-/// looks random; one becomes a point if the light of those before it cannot be used there (error_of() >= 1).
-/// The result depends neither on threads nor on where the work is interrupted.
+/// looks random; one becomes a point if the light of those before it cannot be used there (error_of() >= 1),
+/// and if it does not lie in a gap or under the rim of a disc that sticks out. The result depends neither on
+/// threads nor on where the work is interrupted.
 class PointChooser {
  public:
     /// `tracer` must outlive it; `rays` a point.
@@ -83,6 +84,7 @@ class PointChooser {
     uint64_t cell_key(const glm::vec3& position, uint32_t facing) const;
     void find_normals();
     bool is_covered(const glm::vec3& position, const glm::vec3& normal) const;
+    bool is_narrow(Side side, const glm::vec3& normal) const;
     void start_over();
 
     const tracing::SurfelTracer& tracer_;
