@@ -31,6 +31,9 @@ constexpr float kRough = 64;  ///< crowding from which kCurtain is used
 /// sides that turn farther are not the point's own, and only .969 of the nave's normals would face the right
 /// way.
 constexpr float kLeastTurn = 0.84f;
+/// Below this |n.n'| the whole neighbourhood does not tell which way a side faces, but its
+/// station does.
+constexpr float kOwnTurn = 0.5f;
 
 /// A halo may take 1/kHaloMemory of the memory: two chunks are processed at a time even if memory is short.
 constexpr uint64_t kHaloMemory = 8;
@@ -72,14 +75,19 @@ void narrow_at_corners(ChunkSurface& surface, std::span<const glm::dvec3> ray_of
     }
 }
 
-/// Drops the sides of creases that turn far and have no station, with their lines.
+/// Drops the sides of creases that turn far and have no station, with their lines. Others are oriented by
+/// their own normal where that of the whole neighbourhood would mislead.
 void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
     auto line = surface.lines.begin();
     std::erase_if(surface.sides, [&](const SideNormal& side) {
-        if (!ray_of_site.empty() && ray_of_site[side.site] != glm::dvec3(0.0)) return false;
+        if (!ray_of_site.empty() && ray_of_site[side.site] != glm::dvec3(0.0)) {
+            if (std::abs(glm::dot(side.normal, surface.normals[side.site])) < kOwnTurn)
+                surface.normals[side.site] = side.normal;
+            return false;
+        }
         if (std::abs(glm::dot(side.normal, surface.normals[side.site])) >= kLeastTurn) return false;
-        while (line->site != side.site) ++line;  // every side has one
-        line->toward = glm::vec3(0.0f);
+        while (line != surface.lines.end() && line->site < side.site) ++line;
+        if (line != surface.lines.end() && line->site == side.site) line->toward = glm::vec3(0.0f);
         return true;
     });
     std::erase_if(surface.lines, [](const SiteLine& dropped) { return dropped.toward == glm::vec3(0.0f); });

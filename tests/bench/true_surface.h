@@ -75,11 +75,14 @@ class TrueView {
         glm::dvec3 normal{0.0};
     };
 
-    TrueView(const io::SceneGeometry& geometry, const gi::SceneCamera& camera, uint32_t side)
-        : view_(gi::camera_view(camera, {side, side}, {})),
-          inner_(side - 2 * kMargin),
-          pixels_(size_t{inner_} * inner_) {
-        parallel_ranges(pixels_.size(), side, [&](size_t first, size_t last) {
+    /// Leaves out `margin` pixels on each side.
+    TrueView(const io::SceneGeometry& geometry, const gi::SceneCamera& camera, const ImageSize& size,
+             uint32_t margin = kMargin)
+        : view_(gi::camera_view(camera, size, {})),
+          margin_(margin),
+          inner_(size.width - 2 * margin),
+          pixels_(size_t{inner_} * (size.height - 2 * margin)) {
+        parallel_ranges(pixels_.size(), inner_, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 const glm::dvec3 along = ray(i);
                 const double length = glm::length(along);
@@ -92,8 +95,8 @@ class TrueView {
     const std::vector<Pixel>& pixels() const { return pixels_; }
     /// Returns the direction of a pixel's ray, as in gi/shared/camera.h: one metre of depth long.
     glm::dvec3 ray(size_t pixel) const {
-        const double x = 2 * (static_cast<double>(pixel % inner_ + kMargin) + .5) / view_.width - 1,
-                     y = 2 * (static_cast<double>(pixel / inner_ + kMargin) + .5) / view_.height - 1;
+        const double x = 2 * (static_cast<double>(pixel % inner_ + margin_) + .5) / view_.width - 1,
+                     y = 2 * (static_cast<double>(pixel / inner_ + margin_) + .5) / view_.height - 1;
         return glm::dvec3(view_.forward) + glm::dvec3(view_.right) * x - glm::dvec3(view_.up) * y;
     }
     /// Compares a pixel with what a scan shows there: normal and depth, as `lucarne render --gbuffer` writes.
@@ -110,7 +113,7 @@ class TrueView {
 
  private:
     gi::CameraView view_;
-    uint32_t inner_;  ///< side of the inner picture
+    uint32_t margin_, inner_;  ///< pixels left out on each side; width of the inner picture
     std::vector<Pixel> pixels_;
 };
 

@@ -225,7 +225,8 @@ Result<void> pictures(const BenchRun& run, const Case& measured, const Scan& sca
     LUCARNE_ASSIGN(const io::Image seen, io::read_exr(gbuffer));
     LUCARNE_ASSIGN(const auto expected, truth.picture(measured.parts));
     return judge(what, picture, bench::inner(seen.pixels, bench::kTrueSide),
-                 TrueView(*truth.geometry, truth.camera, bench::kTrueSide), expected, measured.flip);
+                 TrueView(*truth.geometry, truth.camera, {bench::kTrueSide, bench::kTrueSide}), expected,
+                 measured.flip);
 }
 
 Result<void> measure(const BenchRun& run) {

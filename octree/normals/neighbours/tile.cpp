@@ -168,6 +168,10 @@ Moments moments_of_slab(const Patch& patch, const Slab& slab, bool others) {
     return LUCARNE_CALL(slab_moments, patch, slab, others);
 }
 
+size_t count_in_slab(const Patch& patch, const Slab& slab) {
+    return LUCARNE_CALL(slab_count, patch, slab);
+}
+
 std::array<int32_t, kLanes> counts_near(const Patch& patch, size_t first, size_t step, float limit2) {
     return LUCARNE_CALL(near_counts, patch, first, step, limit2);
 }

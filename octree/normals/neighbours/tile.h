@@ -83,6 +83,8 @@ struct Slab {
     float level, limit;
 };
 Moments moments_of_slab(const Patch& patch, const Slab& slab, bool others);
+/// Returns the number of points in a slab.
+size_t count_in_slab(const Patch& patch, const Slab& slab);
 /// Returns how many points of a patch are nearer than the root of `limit2` to each of eight points first,
 /// first + step, ..., themselves included. Points beyond the last one have none.
 std::array<int32_t, kLanes> counts_near(const Patch& patch, size_t first, size_t step, float limit2);

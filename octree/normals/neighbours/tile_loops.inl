@@ -164,6 +164,16 @@ LUCARNE_INLINE size_t total(const Words& v) {
     return sum;
 }
 
+[[gnu::noinline]] size_t slab_count(const Patch& patch, const Slab& slab) {
+    Words counts{};
+    for (size_t i = 0; i < patch.count; i += kLanes) {
+        const Lanes off = load<Lanes>(&patch.x[i]) * slab.normal.x + load<Lanes>(&patch.y[i]) * slab.normal.y +
+                          load<Lanes>(&patch.z[i]) * slab.normal.z - slab.level;
+        counts -= (off <= slab.limit) & (off >= -slab.limit) & (kLane < static_cast<int32_t>(patch.count - i));
+    }
+    return total(counts);
+}
+
 [[gnu::noinline]] Moments slab_moments(const Patch& patch, const Slab& slab, bool others) {
     MomentLanes lanes;
     Words counts{};

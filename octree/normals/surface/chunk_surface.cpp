@@ -33,6 +33,9 @@ constexpr float kLine = 0.05f;
 /// If the heights in the window have this many times the variance of those of the neighbours, the surface
 /// bends. Noise has the same in both.
 constexpr float kBend = 1.5f;
+/// From this ratio on narrow faces are looked for, and from kBend on if the window's normal is so uncertain
+/// (4.5 degrees): noise of half a spacing and more has planes with many points, too.
+constexpr float kClearBend = 3.0f, kUneven = 0.08f;
 /// A share is at most kMostShares of those of the neighbours, except that of a sparse point in the plane of a
 /// dense patch. Only shares of more than kWide times the mean of the neighbourhood are compared.
 constexpr float kMostShares = 4, kWide = 1.5f;
@@ -58,6 +61,8 @@ constexpr float kBeyondEdge = 0.05f, kRoughEdge = 0.25f, kOverEdge = 0.5f;
 /// At a border points up to so many deviations of the heights, and so many spacings more, over the tangent
 /// plane belong to the surface.
 constexpr float kRoughLevel = 3.0f, kFlatLevel = 0.1f;
+/// Largest share of a point of a narrow face, in squares of the spacing of all points around.
+constexpr float kMostNarrow = 2.5f;
 /// Where the points beyond a crease lie up to so many spacings off a plane, they are one plane, and the cell
 /// ends where it begins. Else their points cut the cell, too: several planes, as at the corner of a box.
 constexpr float kRoughSide = 0.5f;
@@ -86,14 +91,16 @@ std::vector<double> median_steps(const ChunkNeighbours& neighbours) {
 /// Returns the line of a site's side of a crease, where its disc ends if the crease is an outer edge.
 SiteLine line_at(uint32_t site, const Side& side, float spacing) {
     const auto n = glm::vec3(side.plane.normal);
-    const glm::vec3 across = side.other - n * glm::dot(side.other, n);
+    const Crease& crease = side.first;
+    const glm::vec3 across = crease.other - n * glm::dot(crease.other, n);
     const float slope = glm::length(across);  // over .4: planes at a crease meet at 24 degrees and more
     const float beyond =
-        std::min(kBeyondEdge * spacing + kRoughEdge * side.roughness / slope, kOverEdge * spacing);
-    SiteLine line{site, n, across / (side.offset < 0 ? -slope : slope),
-                  std::abs(side.offset) / slope + beyond, side.rises ? Beyond::rises : Beyond::falls};
-    if (side.roughness > kRoughSide * spacing) {
-        const float radius = std::abs(side.offset) / slope + kOverEdge * spacing;
+        std::min(kBeyondEdge * spacing + kRoughEdge * crease.roughness / slope, kOverEdge * spacing);
+    SiteLine line{site, n, across / (crease.offset < 0 ? -slope : slope), crease.distance + beyond,
+                  crease.rises ? Beyond::rises : Beyond::falls};
+    const bool rough = crease.roughness > kRoughSide * spacing;
+    if (rough || side.second.distance > 0) {
+        const float radius = (rough ? crease.distance : side.second.distance) + kOverEdge * spacing;
         line.most_area = std::numbers::pi_v<float> / kCoverageRaw * radius * radius;
     }
     return line;
@@ -129,15 +136,19 @@ class SiteEstimator {
         const Patch* patch = &nearest;  // the patch of the fit
         SurfaceFit fit = fitter_.fit(nearest, spacing);
         std::optional<Side> side;
+        bool narrow = false;    // the side is looked for as a narrow face
         glm::vec3 whole(0.0f);  // the normal of the whole neighbourhood at a crease
         double seen = reach;    // all points nearer than this are in `patch`
         const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
             seen = take_window(around, reach);
-            bool bends = false;
+            bool bends = false, clearly = false;
+            SurfaceFit wide = fit;
             if (window_.count > nearest.count) {
-                const SurfaceFit wide = fitter_.fit(window_, spacing);
+                wide = fitter_.fit(window_, spacing);
+                const bool uneven = wide.deviation > kUneven && wide.variance > kBend * fit.variance;
+                clearly = uneven || wide.variance > kClearBend * fit.variance;
                 bends = wide.variance > kBend * fit.variance || !(wide.deviation < kGoodDeviation);
                 patch = improve(fit, wide, window_, *patch);
             }
@@ -163,10 +174,15 @@ class SiteEstimator {
                 apart = goes_on_with(further_);
                 if (!apart) return leave_out(site);
             }
-            if (bends && fit.deviation < kPoorDeviation) side = fit_side(window_, fit, spacing);
+            if (bends) {
+                if (fit.deviation < kPoorDeviation) side = fit_side(window_, fit, spacing);
+                const bool poor = !(fit.deviation < kPoorDeviation);
+                narrow = !side && (clearly || poor) && sparser <= kSparse;
+                if (narrow) side = fit_narrow_side(nearest, window_, wide, spacing, !poor);
+            }
             if (side) {
                 patch = &window_;
-                whole = fit.normal;
+                whole = fit.deviation < kPoorDeviation ? fit.normal : glm::vec3(side->plane.normal);
                 fit.normal = glm::vec3(side->plane.normal);
                 fit.deviation = side->deviation;
                 fit.variance = side->variance;
@@ -183,10 +199,12 @@ class SiteEstimator {
         if (patch != &window_) seen = reach;  // at least
         ShareCell cell(fit.normal, reach, nearest.count - 1, static_cast<float>(seen));
         heights_over(*patch, fit.normal, heights_);
-        const bool rough = side && side->roughness > kRoughSide * spacing;
-        if (side && !rough) leave_to_other_side(*side);
+        const bool rough = side && side->first.roughness > kRoughSide * spacing;
+        if (side && !rough) leave_to_other_sides(*side);
         cell.cut(*patch, heights_, fit.layer, rough);
-        if (side) cell.cut_at(side->other, side->offset);
+        if (side)
+            for (const Crease& crease : {side->first, side->second})
+                if (crease.distance > 0) cell.cut_at(crease.other, crease.offset);
         const float rim = std::numbers::sqrt2_v<float> / 2 * spacing;
         float area = 0;
         std::optional<glm::vec3> outward;
@@ -213,6 +231,7 @@ class SiteEstimator {
             area = std::min(area, earned);
             if (wide && !apart) area = std::min(area, most_beside(nearest, area));
         }
+        if (side && narrow) area = std::min(area, kMostNarrow * spacing * spacing);
         surface_.areas[site] = area;
         if (!side && outward) {
             if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
@@ -221,7 +240,7 @@ class SiteEstimator {
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
         if (whole != glm::vec3(0.0f)) {
             sides_.push_back({site, fit.normal});
-            lines_.push_back(line_at(site, *side, spacing));
+            if (side->first.distance > 0) lines_.push_back(line_at(site, *side, spacing));
         }
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
@@ -291,12 +310,13 @@ class SiteEstimator {
 
     /// Takes the window's points that lie nearer to the other plane of a crease than to their own out of the
     /// layer that cuts the cell: the cell reaches to the line where the planes meet, not half-way to them.
-    void leave_to_other_side(const Side& side) {
+    void leave_to_other_sides(const Side& side) {
         const float level = (side.layer.low + side.layer.high) / 2;
-        for (size_t i = 0; i < window_.count; ++i) {
-            const float away = std::abs(glm::dot(side.other, window_.offset(i)) - side.offset);
-            if (away < std::abs(heights_[i] - level)) heights_[i] = std::numeric_limits<float>::max();
-        }
+        for (const Crease& crease : {side.first, side.second})
+            for (size_t i = 0; i < window_.count && crease.distance > 0; ++i) {
+                const float away = std::abs(glm::dot(crease.other, window_.offset(i)) - crease.offset);
+                if (away < std::abs(heights_[i] - level)) heights_[i] = std::numeric_limits<float>::max();
+            }
     }
 
     const Patch* improve(SurfaceFit& fit, const SurfaceFit& other, const Patch& patch, const Patch& old) {

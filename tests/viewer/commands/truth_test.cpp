@@ -21,7 +21,7 @@ TEST(Truth, OtherRaysSeeTheSameSurface) {
         ASSERT_TRUE(truth) << truth.error().line();
         const auto seen = truth->picture({"surface"});
         ASSERT_TRUE(seen) << seen.error().line();
-        const TrueView view(*truth->geometry, truth->camera, bench::kTrueSide);
+        const TrueView view(*truth->geometry, truth->camera, {bench::kTrueSide, bench::kTrueSide});
         ASSERT_EQ(seen->size(), view.pixels().size());
         size_t visible = 0, other_depth = 0, other_normal = 0;
         for (size_t i = 0; i < seen->size(); ++i) {
@@ -59,7 +59,7 @@ TEST(Truth, TheReferenceAgreesWithTheMeshOnHoleFreePoints) {
         ASSERT_EQ(ran.code, 0) << ran.output;
         const auto ours = bench::inner(io::read_exr(picture).value().pixels, bench::kTrueSide),
                    seen = bench::inner(io::read_exr(gbuffer).value().pixels, bench::kTrueSide);
-        const TrueView view(*truth.geometry, truth.camera, bench::kTrueSide);
+        const TrueView view(*truth.geometry, truth.camera, {bench::kTrueSide, bench::kTrueSide});
         double sum = 0, true_sum = 0;
         size_t good = 0;
         for (size_t i = 0; i < ours.size(); ++i) {
