@@ -233,14 +233,15 @@ class SiteEstimator {
         }
         if (side && narrow) area = std::min(area, kMostNarrow * spacing * spacing);
         surface_.areas[site] = area;
-        if (!side && outward) {
+        const bool creased = side && side->first.distance > 0;
+        if (!creased && outward) {
             if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
             add_border(site, *outward, around, fit, rim);
         }
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
         if (whole != glm::vec3(0.0f)) {
             sides_.push_back({site, fit.normal});
-            if (side->first.distance > 0) lines_.push_back(line_at(site, *side, spacing));
+            if (creased) lines_.push_back(line_at(site, *side, spacing));
         }
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
