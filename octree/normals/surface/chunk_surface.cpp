@@ -62,7 +62,7 @@ constexpr float kBeyondEdge = 0.05f, kRoughEdge = 0.25f, kOverEdge = 0.5f;
 /// plane belong to the surface.
 constexpr float kRoughLevel = 3.0f, kFlatLevel = 0.1f;
 /// Largest share of a point of a narrow face, in squares of the spacing of all points around.
-constexpr float kMostNarrow = 2.5f;
+constexpr float kMostNarrow = 1.2f;
 /// Where the points beyond a crease lie up to so many spacings off a plane, they are one plane, and the cell
 /// ends where it begins. Else their points cut the cell, too: several planes, as at the corner of a box.
 constexpr float kRoughSide = 0.5f;
