@@ -21,8 +21,6 @@ namespace {
 constexpr size_t kPixelsATask = 4096, kPointsATask = 256;
 /// Pixels that tell what is bright for a picture.
 constexpr size_t kPilots = 128;
-constexpr size_t kPilotsForSky = 512;
-constexpr uint32_t kRaysToSky = 32;  ///< of each pixel that gathers, through openings
 /// Share of the time that buffers take if bright light comes by rays.
 constexpr double kBuffersShare = 0.8;
 /// Micro-buffers of specular lobes end where the lobe has fallen to this share of its peak; the rest is a
@@ -32,18 +30,20 @@ constexpr float kLobeEnd = 1e-3f;
 enum class Lobe : uint8_t { diffuse, specular };
 
 /// Returns the scale of micro-buffers of lobes with an exponent (GatherPoint).
-float lobe_scale(const EngineSettings& settings, float exponent) {
-    return settings[kWarp] == Warp::hemisphere ? 1.0f : std::sqrt(1 - std::pow(kLobeEnd, 2 / exponent));
+float lobe_scale(Warp warp, float exponent) {
+    return warp == Warp::hemisphere ? 1.0f : std::sqrt(1 - std::pow(kLobeEnd, 2 / exponent));
 }
 
 /// One picture of gathered light: of one lobe of the pixels that have it.
 class LobeGather {
  public:
-    LobeGather(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what, GatherCounts& counts)
+    LobeGather(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what, const BufferStyle& style,
+               GatherCounts& counts)
         : frame_(frame),
           device_(device),
           gatherer_(gatherer),
           what_(what),
+          style_(style),
           counts_(counts),
           seed_(mix64(frame.settings[kSeed], frame.index)) {}
 
@@ -58,16 +58,15 @@ class LobeGather {
         bright_ = nullptr;
         gatherer_.set_no_bright();
         LUCARNE_TRY(gatherer_.set_openings(device_, nullptr));
-        gatherer_.set_fill(frame_.settings[kFill]);
         if (rare.find_bright) {
             LUCARNE_ASSIGN(bright_,
                            timed(frame_, "bright light", [&] { return bright_for(rare.find_bright); }));
         }
         if (rare.find_openings) {
             LUCARNE_ASSIGN(const SkyOpenings* openings, timed(frame_, "openings to the sky", [&] {
-                               return rare.find_openings(pilots(kPilotsForSky), seed_);
+                               return rare.find_openings(pilots(SkyOpenings::kPilots), seed_);
                            }));
-            LUCARNE_TRY(gatherer_.set_openings(device_, openings, kRaysToSky));
+            LUCARNE_TRY(gatherer_.set_openings(device_, openings, SkyOpenings::kRays));
         }
         const uint32_t step = frame_.settings[kGatherEvery];
         // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
@@ -108,7 +107,7 @@ class LobeGather {
         if (lobe_ == Lobe::specular) {
             point.exponent = reflectances_[pixel].exponent;
             point.axis = glm::normalize(2 * glm::dot(at.normal, at.viewer) * at.normal - at.viewer);
-            point.scale = lobe_scale(frame_.settings, point.exponent);
+            point.scale = lobe_scale(style_.warp, point.exponent);
         }
         return point;
     }
@@ -156,7 +155,7 @@ class LobeGather {
             if (!again) report(buffers * static_cast<double>(count) / static_cast<double>(points.size()));
         };
         LUCARNE_TRY(gatherer_.gather(device_, what_, points, frame_.settings[kMicroBuffer], seed_, found,
-                                     frame_.stop, done));
+                                     frame_.stop, done, style_.fill));
         if (bright_) add_bright(points, found);
         if (!again && !frame_.stopped()) report(1);
         results.assign(pixels.size(), glm::vec4(0.0f));
@@ -186,6 +185,7 @@ class LobeGather {
     ClDevice& device_;
     Gatherer& gatherer_;
     Gathered what_;
+    BufferStyle style_;
     GatherCounts& counts_;
     uint64_t seed_;
     size_t reported_ = 0;  ///< pixels
@@ -198,19 +198,20 @@ class LobeGather {
 }  // namespace
 
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             Gathered what, const RareLight& rare, GatherCounts& counts) {
+                                             Gathered what, const RareLight& rare, const BufferStyle& style,
+                                             GatherCounts& counts) {
     auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     std::vector<glm::vec4> light;
-    LobeGather gather(frame, device, gatherer, what, counts);
+    LobeGather gather(frame, device, gatherer, what, style, counts);
     LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, {}, rare, light));
     if (frame.stopped()) return light;
-    LUCARNE_TRY(reflect(frame, device, gatherer, what, std::move(surfaces), light, counts));
+    LUCARNE_TRY(reflect(frame, device, gatherer, what, std::move(surfaces), light, counts, style));
     return light;
 }
 
 Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
-                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light,
-                     GatherCounts& counts) {
+                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light, GatherCounts& counts,
+                     const BufferStyle& style) {
     const std::vector<Material> materials = device_materials(frame.materials);
     std::vector<Reflectance> reflectances(surfaces.size());
     parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
@@ -224,13 +225,13 @@ Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathere
     for (size_t i = 0; i < surfaces.size(); ++i)
         if (!(reflectances[i].ks > 0)) surfaces[i].radius = 0;
     std::vector<glm::vec4> lobe;
-    LobeGather gather(frame, device, gatherer, what, counts);
+    LobeGather gather(frame, device, gatherer, what, style, counts);
     LUCARNE_TRY(gather.run(Lobe::specular, surfaces, reflectances, {}, lobe));
     if (frame.stopped()) return {};
     for (size_t i = 0; i < light.size(); ++i) {
         const Reflectance& r = reflectances[i];
         if (!(surfaces[i].radius > 0)) continue;
-        const float scale = lobe_scale(frame.settings, r.exponent);
+        const float scale = lobe_scale(style.warp, r.exponent);
         light[i] += r.ks * (r.exponent + 2) / 2 * scale * scale * glm::vec4(glm::vec3(lobe[i]), 0);
     }
     return {};

@@ -31,16 +31,24 @@ struct RareLight {
     FindOpenings find_openings;  ///< none: buffers find all of the sky
 };
 
+/// How micro-buffers are drawn: as by default, or as in the figures of the paper for comparison.
+struct BufferStyle {
+    Fill fill = Fill::rays;
+    Warp warp = Warp::lobe;
+};
+
 /// Returns what each pixel of the frame reflects of `what`, the light that `gatherer` holds, W/(sr m^2),
 /// row 0 on top. Diffuse and specular lobes gather by micro-buffers of their own. Pixels between those that
 /// gather (kGatherEvery) are interpolated. Leaves out the rest if the frame is stopped. Errors: the device
 /// failed.
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
-                                             Gathered what, const RareLight& rare, GatherCounts& counts);
+                                             Gathered what, const RareLight& rare, const BufferStyle& style,
+                                             GatherCounts& counts);
 
 /// Turns the mean radiance that each pixel receives (`light`) into what it reflects, W/(sr m^2). Specular
 /// lobes gather by micro-buffers of their own, as above. Errors likewise.
 Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
-                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light, GatherCounts& counts);
+                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light, GatherCounts& counts,
+                     const BufferStyle& style = {});
 
 }  // namespace lucarne::gi

@@ -155,8 +155,8 @@ float share_of_buffer(global const float4* openings, uint count, global const fl
     for (uint i = 0; i < count; ++i) {
         if (!(densities[i] > 0.0f)) continue;
         float4 sphere = openings[i];
-        float3 middle = sphere.xyz - position;
-        if (dot(direction, middle) > sqrt(dot(middle, middle) - sphere.w * sphere.w)) sum += densities[i];
+        float3 middle = sphere.xyz - position, beside = cross(direction, middle);
+        if (dot(direction, middle) > 0.0f && dot(beside, beside) < sphere.w * sphere.w) sum += densities[i];
     }
     return cosine / sum;
 }
@@ -255,10 +255,10 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
 }
 
 // For each point: the light that it receives by what its buffer sees, as the ten terms of a LightByNormal (three floats
-// each). `first`: the number of the first point's results and of what it sees. At the point's own normal it is the mean over the rays, as gather() has it. What changes with the normal is that
+// each). At the point's own normal it is the mean over the rays, as gather() has it. What changes with the normal is that
 // of the spherical harmonics up to the second order (Ramamoorthi & Hanrahan 2001, "An efficient representation for
 // irradiance environment maps"): they turn max(c, 0), c the cosine between normal and ray, into 3/32 + c/2 + 15/32 c^2.
-// Arguments as above.
+// Arguments as above; `first`: the number of the first point, of its results and of what it sees.
 kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
                   global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky,
                   global const float4* openings, uint open, global const float* densities,

@@ -107,7 +107,7 @@ inline constexpr std::array<std::string_view, 2> kFillKinds = {"rays", "pixels"}
 inline constexpr Option<Fill> kFill{{
     .kind = OptionKind::choice,
     .key = "fill",
-    .label = "buffers show",
+    .label = "",  // for comparisons alone
     .help = "What surfaces cover in micro-buffers: those pixels whose ray meets them, or the one at their "
             "middle",
     .cost = "pixels are faster and leave holes in near surfaces, through which light shines",
@@ -122,7 +122,7 @@ inline constexpr std::array<std::string_view, 2> kWarpKinds = {"lobe", "hemisphe
 inline constexpr Option<Warp> kWarp{{
     .kind = OptionKind::choice,
     .key = "warp",
-    .label = "reflections from",
+    .label = "",  // for comparisons alone
     .help = "Directions of the micro-buffers of specular lobes: those of the lobe, or a half space",
     .cost = "both take as long; narrow lobes find hardly any direction of a half space",
     .choices = kWarpKinds,

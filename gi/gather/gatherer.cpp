@@ -165,11 +165,12 @@ Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed)
 
 Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points,
                               uint32_t side, uint64_t seed, std::span<glm::vec4> results,
-                              const std::atomic<bool>* stop, const std::function<void(size_t)>& done) {
+                              const std::atomic<bool>* stop, const std::function<void(size_t)>& done,
+                              Fill fill) {
     const auto [lit, glossy, sky, open] = asked(what);
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid, fill_)));
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid, fill)));
     const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
     const size_t most = std::min(points.size(), launch.points);
     LUCARNE_TRY(device.reserve(points_, most * sizeof(GatherPoint), "gather points"));
@@ -237,7 +238,8 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
 }
 
 Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered what,
-                                                   const MicroBuffers& buffers) {
+                                                   const MicroBuffers& buffers,
+                                                   const std::atomic<bool>* stop) {
     std::vector<LightByNormal> result(buffers.count());
     if (result.empty()) return result;
     const auto [lit, glossy, sky, open] = asked(what);
@@ -248,6 +250,7 @@ Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered wh
     const std::span<const GatherPoint> points = buffers.held_;
     std::vector<LightByNormal> by_rays(open > 0 ? points.size() : 0);
     for (size_t first = 0; first < result.size(); first += launch.points) {
+        if (stop && *stop) return std::vector<LightByNormal>(result.size());
         const size_t count = std::min(launch.points, result.size() - first);
         if (open > 0) LUCARNE_TRY(send_densities(device, points.subspan(first, count), buffers.grid_));
         LUCARNE_TRY(kernel->run(

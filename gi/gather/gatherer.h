@@ -64,24 +64,24 @@ class Gatherer {
     /// Has each point look for the sky through openings with so many rays of its own as well, until the next
     /// call or another tree comes. The openings must live until then. Null: without. Errors: device memory.
     Result<void> set_openings(ClDevice& device, const SkyOpenings* openings, uint32_t rays = 0);
-    /// Chooses what the nodes of the tree cover in the buffers of gather().
-    void set_fill(Fill fill) { fill_ = fill; }
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
     /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
     /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`
     /// becomes true the rest is left out. `done` is told how many points are finished each time some are.
+    /// `fill`: what the nodes of the tree cover.
     /// Errors: the device failed.
     Result<void> gather(ClDevice& device, Gathered what, std::span<const GatherPoint> points, uint32_t side,
                         uint64_t seed, std::span<glm::vec4> results, const std::atomic<bool>* stop = nullptr,
-                        const std::function<void(size_t)>& done = {});
+                        const std::function<void(size_t)>& done = {}, Fill fill = Fill::rays);
     /// Draws micro-buffers for points that gather evenly from their half spaces, and keeps them in `buffers`;
     /// does nothing if it has drawn these of the same tree. Arguments and errors as for gather(). Use a
     /// MicroBuffers with one gatherer only.
     Result<void> see(ClDevice& device, std::span<const GatherPoint> points, uint32_t side, uint64_t seed,
                      MicroBuffers& buffers, const std::atomic<bool>* stop = nullptr);
-    /// Computes the light that reaches the points of `buffers`, which see() has drawn. Errors: the device
-    /// failed.
-    Result<std::vector<LightByNormal>> shade(ClDevice& device, Gathered what, const MicroBuffers& buffers);
+    /// Computes the light that reaches the points of `buffers`, which see() has drawn. If `stop` becomes true
+    /// the rest is left dark. Errors: the device failed.
+    Result<std::vector<LightByNormal>> shade(ClDevice& device, Gathered what, const MicroBuffers& buffers,
+                                             const std::atomic<bool>* stop = nullptr);
 
  private:
     struct Asked {
@@ -106,7 +106,6 @@ class Gatherer {
     SkyPicture sky_{};
     bool empty_ = true, glossy_ = false;
     float reach2_ = kNoReach;
-    Fill fill_ = Fill::rays;
     const SkyOpenings* openings_ = nullptr;
     uint32_t rays_to_sky_ = 0;
     float rays_over_buffer_ = 0;    ///< rays_to_sky_ over the rays of a buffer

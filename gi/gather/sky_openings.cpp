@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -12,7 +13,6 @@
 
 #include "gi/gather/traced_tree.h"
 #include "gi/lighting/area_points.h"
-#include "gi/shared/environment.h"
 #include "gi/shared/lobe.h"
 #include "gi/tracing/light_sampling.h"
 #include "gi/tracing/scatter.h"
@@ -38,20 +38,22 @@ constexpr size_t kPilotsAbout = 4;  ///< that tell what a point sees of the sphe
 /// Share of a sphere that is taken as seen though no pilot about a point sees it.
 constexpr float kUnseen = 0.05f;
 
-glm::vec3 sky_radiance(const GatherSky& sky, const glm::vec3& direction) {
-    const glm::vec2 place = environment_place(direction, sky.rotation);
-    const auto x = std::min(static_cast<uint32_t>(place.x * static_cast<float>(sky.width)), sky.width - 1);
-    const auto y = std::min(static_cast<uint32_t>(place.y * static_cast<float>(sky.height)), sky.height - 1);
-    return sky.texels[size_t{y} * sky.width + x];
+glm::dvec2 random_shift(Random& random) {
+    const double x = random.uniform();
+    return {x, random.uniform()};
 }
 
 /// A sphere as a point sees it.
 struct Cone {
     glm::vec3 middle;  ///< from the point, m
-    float limit = 0;   ///< directions d in it have dot(d, middle) > limit
+    float radius2 = 0;
     float height = 0;  ///< 1 - cosine of the half angle: the solid angle is 2 pi times it; 0: does not count
 
-    bool holds(const glm::vec3& direction) const { return height > 0 && glm::dot(direction, middle) > limit; }
+    /// As gather.cl has it; by the sine, because cosines of narrow cones are lost in rounding.
+    bool holds(const glm::vec3& direction) const {
+        const glm::vec3 beside = glm::cross(direction, middle);
+        return height > 0 && glm::dot(direction, middle) > 0 && glm::dot(beside, beside) < radius2;
+    }
     glm::vec3 draw(const glm::dvec2& square) const {
         const float low = height * static_cast<float>(square.x);
         const float sine = std::sqrt(std::max(low * (2 - low), 0.0f));
@@ -66,10 +68,11 @@ struct Cone {
 /// Sphere and point as gather.cl has them.
 Cone cone_of(const glm::vec4& sphere, const glm::vec3& point) {
     Cone cone{.middle = glm::vec3(sphere) - point};
-    const float distance2 = glm::dot(cone.middle, cone.middle), radius2 = sphere.w * sphere.w;
-    if (!(distance2 > kNear * kNear * radius2)) return cone;
-    cone.limit = std::sqrt(distance2 - radius2);
-    cone.height = radius2 / distance2 / (1 + cone.limit / std::sqrt(distance2));
+    const float distance2 = glm::dot(cone.middle, cone.middle);
+    cone.radius2 = sphere.w * sphere.w;
+    if (!(distance2 > kNear * kNear * cone.radius2)) return cone;
+    const float sine2 = cone.radius2 / distance2;
+    cone.height = sine2 / (1 + std::sqrt(1 - sine2));
     return cone;
 }
 
@@ -105,22 +108,17 @@ float distance_of_opening(const tracing::SurfelTracer& tracer, const glm::vec3& 
     return 0;
 }
 
-/// Casts the rays of a pilot and adds those that meet nothing and pass an opening. Returns how many meet
-/// nothing.
-size_t look_for_sky(const tracing::SurfelTracer& tracer, const GatherSky& sky, const GatherPoint& pilot,
-                    const glm::vec3& start, Random random, std::vector<SkyRay>& found) {
-    size_t free = 0;
-    const double x = random.uniform();
-    const glm::dvec2 shift(x, random.uniform());
+/// Returns those rays of a pilot that meet nothing.
+std::vector<glm::vec3> free_rays(const tracing::SurfelTracer& tracer, const GatherPoint& pilot,
+                                 const glm::vec3& start, Random random) {
+    std::vector<glm::vec3> rays;
+    const glm::dvec2 shift = random_shift(random);
     for (uint32_t i = 0; i < kRaysOfAPilot; ++i) {
         const glm::vec3 ray =
             tracing::cosine_power_direction(pilot.normal, 1, lattice_point(i, kRaysOfAPilot, shift));
-        if (tracer.occluded_along(start, ray)) continue;
-        ++free;
-        const float distance = distance_of_opening(tracer, start, ray);
-        if (distance > 0) found.push_back({start + distance * ray, sky_radiance(sky, ray)});
+        if (!tracer.occluded_along(start, ray)) rays.push_back(ray);
     }
-    return free;
+    return rays;
 }
 
 /// Rays through openings that are near each other.
@@ -170,13 +168,24 @@ SkyOpenings SkyOpenings::find(const tracing::SurfelTracer& tracer, const GatherS
     SkyOpenings openings;
     if (sky.texels.empty() || pilots.empty()) return openings;
     std::vector<glm::vec3> starts(pilots.size());
-    std::vector<std::vector<SkyRay>> found(pilots.size());
-    std::vector<size_t> free(pilots.size());
+    std::vector<std::vector<glm::vec3>> free(pilots.size());
     parallel_ranges(pilots.size(), kPilotsATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last && !(stop && *stop); ++i) {
             starts[i] = ray_start(tracer, pilots[i]);
-            free[i] = look_for_sky(tracer, sky, pilots[i], starts[i], Random(seed, i), found[i]);
+            free[i] = free_rays(tracer, pilots[i], starts[i], Random(seed, i));
         }
+    });
+    size_t open = 0;
+    for (const std::vector<glm::vec3>& of_pilot : free) open += of_pilot.size();
+    if (static_cast<double>(open) > kWide * static_cast<double>(pilots.size() * kRaysOfAPilot))
+        return openings;
+    std::vector<std::vector<SkyRay>> found(pilots.size());
+    parallel_ranges(pilots.size(), kPilotsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last && !(stop && *stop); ++i)
+            for (const glm::vec3& ray : free[i]) {
+                const float distance = distance_of_opening(tracer, starts[i], ray);
+                if (distance > 0) found[i].push_back({starts[i] + distance * ray, sky.radiance(ray)});
+            }
     });
     std::vector<SkyRay> rays;
     std::vector<double> distances;
@@ -185,10 +194,7 @@ SkyOpenings SkyOpenings::find(const tracing::SurfelTracer& tracer, const GatherS
             rays.push_back(ray);
             distances.push_back(glm::distance(ray.place, starts[i]));
         }
-    const auto met_nothing = static_cast<double>(std::accumulate(free.begin(), free.end(), size_t{0}));
-    if (rays.empty() || met_nothing > kWide * static_cast<double>(pilots.size() * kRaysOfAPilot) ||
-        (stop && *stop))
-        return openings;
+    if (rays.empty() || (stop && *stop)) return openings;
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
     const auto least = static_cast<float>(kLeastShareOfDistance * *middle);
@@ -221,8 +227,7 @@ void SkyOpenings::find_visible(std::span<const GatherPoint> pilots, std::span<co
             for (size_t k = 0; k < spheres_.size(); ++k) {
                 const Cone cone = cone_of(spheres_[k], pilots[i].position);
                 if (!(cone.height > 0) || !(largest_cosine(cone, pilots[i].normal) > 0)) continue;
-                const double x = random.uniform();
-                const glm::dvec2 shift(x, random.uniform());
+                const glm::dvec2 shift = random_shift(random);
                 for (uint32_t ray = 0; ray < kRaysATest; ++ray) {
                     const glm::vec3 direction = cone.draw(lattice_point(ray, kRaysATest, shift));
                     if (glm::dot(direction, pilots[i].normal) > 0 &&
@@ -279,8 +284,7 @@ void SkyOpenings::each_ray(const GatherPoint& point, std::span<const float> dens
     }
     if (ends.empty() || !(ends.back() > 0)) return;
     Random random(point.seed);
-    const double x = random.uniform();
-    const glm::dvec2 shift(x, random.uniform());
+    const glm::dvec2 shift = random_shift(random);
     const double first = random.uniform();
     const glm::vec3 start = ray_start(*tracer_, point);
     size_t sphere = 0;
@@ -291,9 +295,8 @@ void SkyOpenings::each_ray(const GatherPoint& point, std::span<const float> dens
         if (!(cosine > 0) || tracer_->occluded_along(start, direction)) continue;
         float sum = cosine;
         for (size_t k = 0; k < cones.size(); ++k)
-            if (densities[k] > 0 && cones[k].holds(direction)) sum += densities[k];
-        visit(direction,
-              sky_radiance(*sky_, direction) * (cosine * rays / (static_cast<float>(count) * sum)));
+            if (densities[k] > 0 && (k == sphere || cones[k].holds(direction))) sum += densities[k];
+        visit(direction, sky_->radiance(direction) * (cosine * rays / (static_cast<float>(count) * sum)));
     }
 }
 

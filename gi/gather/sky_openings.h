@@ -44,6 +44,8 @@ class SkyOpenings {
 
     /// The largest mean share of the half spaces of pilots that is open.
     static constexpr double kWide = 0.15;
+    static constexpr size_t kPilots = 512;  ///< that find the openings of a picture
+    static constexpr uint32_t kRays = 32;   ///< of each point, into the cones of the spheres
 
  private:
     /// Sets the shares of the spheres that the pilots see.

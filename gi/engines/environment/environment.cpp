@@ -53,10 +53,6 @@ constexpr size_t kMostSecondariesHeld = 262144;  ///< their micro-buffers take 8
 constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
 constexpr size_t kRepairsInMotion = 2048;        ///< likewise, in a frame of a motion
-constexpr size_t kPilots = 512;                  ///< pixels that look for openings to the sky
-/// Through openings, of each point that pixels show. Those of secondary points would take as long as their
-/// buffers and gain nothing (FLIP of a loft by day .1617 and .1612 without).
-constexpr uint32_t kRaysToSky = 32;
 
 class EnvironmentEngine final : public Engine {
  public:
@@ -77,7 +73,7 @@ class EnvironmentEngine final : public Engine {
     Result<std::vector<glm::vec3>> irradiance_at(Frame& frame, std::span<const uint32_t> sides,
                                                  Gathered what);
     Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
-    Result<std::vector<LightByNormal>> shade(Gathered what, const MicroBuffers& buffers);
+    Result<std::vector<LightByNormal>> shade(const Frame& frame, Gathered what, const MicroBuffers& buffers);
     Result<std::vector<Cache>> gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
                                          std::span<const uint32_t> pixels, float spacing, Gathered what,
                                          std::span<glm::vec4> light);
@@ -224,10 +220,13 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
 }
 
 /// Lights the micro-buffers of points that pixels show. They cast rays of their own at openings to the sky.
-Result<std::vector<LightByNormal>> EnvironmentEngine::shade(Gathered what, const MicroBuffers& buffers) {
+/// Those of secondary points would take as long as their buffers and gain nothing (FLIP of a loft by day
+/// .1617, .1612 without).
+Result<std::vector<LightByNormal>> EnvironmentEngine::shade(const Frame& frame, Gathered what,
+                                                            const MicroBuffers& buffers) {
     Gatherer& gatherer = lighting_.gatherer();
-    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, kRaysToSky));
-    LUCARNE_ASSIGN(auto light, gatherer.shade(lighting_.opencl(), what, buffers));
+    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, SkyOpenings::kRays));
+    LUCARNE_ASSIGN(auto light, gatherer.shade(lighting_.opencl(), what, buffers, frame.stop));
     LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), nullptr));
     return light;
 }
@@ -238,7 +237,7 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
     const TimedPass pass(frame, "caches");
     // The sky is the same for secondary points and for pixels.
     if (what != Gathered::light_of_surfels && sky_.empty()) {
-        LUCARNE_ASSIGN(sky_, shade(Gathered::sky, buffers_));
+        LUCARNE_ASSIGN(sky_, shade(frame, Gathered::sky, buffers_));
     }
     std::vector<LightByNormal> light(buffers_.count());
     if (what != Gathered::sky) {
@@ -280,7 +279,7 @@ Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<
         LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer], seed_,
                                              repairs_, frame.stop));
         if (frame.stopped()) break;
-        LUCARNE_ASSIGN(const auto gathered, shade(what, repairs_));
+        LUCARNE_ASSIGN(const auto gathered, shade(frame, what, repairs_));
         for (size_t i = 0; i < gathered.size(); ++i) {
             const SurfacePoint& at = surfaces[some[i]];
             light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
@@ -337,12 +336,14 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     }
     if (frame.stopped()) return {};
     report(frame, 0.4);
-    if (lighting_.has_sky()) {
+    // The sky's light reaches pixels at once, or by one reflection.
+    if (lighting_.has_sky() && !frame.moving && s[kOnlyBounce] <= 1) {
         const TimedPass pass(frame, "openings to the sky");
         const std::vector<uint32_t> pixels = pixels_of(surfaces);
         std::vector<GatherPoint> pilots;
-        for (size_t i = 0; i < std::min(kPilots, pixels.size()); ++i) {
-            const SurfacePoint& at = surfaces[pixels[i * pixels.size() / std::min(kPilots, pixels.size())]];
+        for (size_t i = 0; i < std::min(SkyOpenings::kPilots, pixels.size()); ++i) {
+            const SurfacePoint& at =
+                surfaces[pixels[i * pixels.size() / std::min(SkyOpenings::kPilots, pixels.size())]];
             pilots.push_back(point_at(at.position, at.normal, at.radius, mix64(seed_ + 3, i)));
             pilots.back().viewer = at.viewer;
         }

@@ -77,7 +77,8 @@ Result<void> MicroEngine::gather(Frame& frame) {
             return lighting_.find_openings(frame, pilots, seed);
         };
     LUCARNE_ASSIGN(const std::vector<glm::vec4> light,
-                   gather_pixels(frame, lighting_.opencl(), lighting_.gatherer(), what, rare, counts_));
+                   gather_pixels(frame, lighting_.opencl(), lighting_.gatherer(), what, rare,
+                                 {s[kFill], s[kWarp]}, counts_));
     if (!frame.stopped()) upload_radiance(frame, light);
     return {};
 }

@@ -156,13 +156,14 @@ Result<void> PathsEngine::add_direct(Frame& frame, const std::vector<LightView>&
 /// Returns the part of the sky that lights by its directions: all of it, unless rays of the bake see the
 /// rest.
 const SkyDirections& PathsEngine::sky_directions(const EngineSettings& settings) const {
-    return relight_ && settings[kSkyLight] == SkyLight::links ? bright_sky_ : sky_.directions;
+    const bool by_points = relight_ && !relight_->bake().paths.points.empty();
+    return by_points && settings[kSkyLight] == SkyLight::links ? bright_sky_ : sky_.directions;
 }
 
 /// Returns the sky that gathering points see directly; null if they see none.
 const PointSky* PathsEngine::point_sky(const EngineSettings& settings) {
-    if (!relight_ || settings[kSkyLight] != SkyLight::links || even_sky_.texels.empty() ||
-        !wants_direct(settings))
+    if (!relight_ || relight_->bake().paths.points.empty() || settings[kSkyLight] != SkyLight::links ||
+        even_sky_.texels.empty() || !wants_direct(settings))
         return nullptr;
     if (!point_sky_) point_sky_.emplace(relight_->shared_bake());
     if (point_sky_of_ != scene_.environment) {
@@ -282,13 +283,15 @@ void PathsEngine::add_indirect(Frame& frame) {
         const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
         pixel_points_.visit(
             PixelPoints::List::grid, surfaces, [&](size_t i, std::span<const PointShare> about) {
-                if (about.empty() || frame.stopped()) return;
+                if ((about.empty() && !sky_rays) || frame.stopped()) return;
                 const SurfacePoint& at = surfaces[i];
                 glm::vec3 irradiance = irradiance_of(about, irradiance_);
-                if (sky_rays) irradiance += sky_rays->correction(at, about, mix64(~seed, i));
+                if (sky_rays)
+                    irradiance =
+                        glm::max(irradiance + sky_rays->correction(at, about, mix64(~seed + 1, i)), 0.0f);
                 const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
                 glm::vec3 reflected = r.kd / kPi * irradiance;
-                if (glossy && r.ks > 0)
+                if (glossy && r.ks > 0 && !about.empty())
                     reflected += glossy->reflected(about, irradiance, r, at.normal, at.viewer);
                 radiance[i] += glm::vec4(reflected, 0);
             });

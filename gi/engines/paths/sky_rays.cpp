@@ -22,7 +22,7 @@ constexpr float kDisagree = 0.25f, kFewestOpen = 0.1f;
 /// The cosine of the turn from the normals of a place's points below which they are none of its surface.
 constexpr float kLeastAlike = 0.88f;
 constexpr uint32_t kSkyRays = 64;  ///< of a place
-/// Share of the rays that go anywhere: the points may have missed what a pixel sees.
+/// The share of rays drawn by the cosine alone: the points may have missed what a pixel sees.
 constexpr double kAnywhere = 0.5;
 
 /// A density of directions: in proportion to the light by which points see the cells of sky_grid.h, or by the
@@ -43,10 +43,11 @@ class Guide {
         }
         for (const uint32_t cell : cells_) sums_.push_back(total_ += weights_[cell]);
     }
-    bool empty() const { return cells_.empty(); }
+    bool empty() const { return cells_.empty(); }  ///< then all directions are drawn by the cosine
 
     /// Returns the direction that belongs to a point of the unit square.
     glm::vec3 direction(glm::dvec2 square) const {
+        if (empty()) return cosine_direction(normal_, square);
         if (square.y < kAnywhere) return cosine_direction(normal_, {square.x, square.y / kAnywhere});
         const double at = (square.y - kAnywhere) / (1 - kAnywhere) * total_;
         const auto found = static_cast<size_t>(std::ranges::upper_bound(sums_, at) - sums_.begin());
@@ -57,8 +58,9 @@ class Guide {
     }
     /// Returns its density, 1/sr.
     float density(const glm::vec3& direction) const {
-        const double guided = weights_[sky_cell(direction)] / total_ * kSkyCells / (4 * M_PI);
         const double cosine = std::max(glm::dot(normal_, direction), 0.0f);
+        if (empty()) return static_cast<float>(cosine / M_PI);
+        const double guided = weights_[sky_cell(direction)] / total_ * kSkyCells / (4 * M_PI);
         return static_cast<float>((1 - kAnywhere) * guided + kAnywhere * cosine / M_PI);
     }
 
@@ -73,6 +75,7 @@ class Guide {
 }  // namespace
 
 bool SkyRays::are_unsure(const SurfacePoint& place, std::span<const PointShare> about) const {
+    if (about.size() <= 1) return true;  // none, or the nearest of those beyond their reach
     float mean = 0, square = 0, open = 0, turn = 0;
     for (const PointShare& share : about) {
         const float light = luminance(at_points_[share.point]);
@@ -90,7 +93,7 @@ glm::vec3 SkyRays::correction(const SurfacePoint& place, std::span<const PointSh
                               uint64_t key) const {
     if (!are_unsure(place, about)) return glm::vec3(0.0f);
     const Guide guide(point_sky_, about, place.normal);
-    if (guide.empty()) return glm::vec3(0.0f);
+    if (guide.empty() && !about.empty()) return glm::vec3(0.0f);
     const glm::vec3 above = tracing::offset_origin(place.position, place.normal, place.radius);
     const glm::vec3 start = tracing::before_what_hides(tracer_, above, place.viewer, place.radius);
     Random random(key);

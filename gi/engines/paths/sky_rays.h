@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -29,7 +28,7 @@ class SkyRays {
     glm::vec3 correction(const SurfacePoint& place, std::span<const PointShare> about, uint64_t key) const;
 
  private:
-    /// Whether the points of a place do not tell its sky.
+    /// Returns whether the points are unreliable for the sky at a place.
     bool are_unsure(const SurfacePoint& place, std::span<const PointShare> about) const;
 
     const tracing::SurfelTracer& tracer_;

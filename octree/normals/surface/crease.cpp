@@ -195,6 +195,7 @@ std::optional<Beside> take_nearest_plane(Patch& rest, float spacing, float limit
     Beside found;
     for (int fit = 0; fit < 2; ++fit) {
         found.points = moments_of_slab(rest, *slab, false);
+        if (found.points.count < kLeastBeside) return std::nullopt;
         found.plane = plane_of(found.points);
         slab->normal = glm::vec3(found.plane.normal);
         slab->level = static_cast<float>(glm::dot(found.plane.normal, middle_of(found.points)));

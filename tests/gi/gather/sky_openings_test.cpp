@@ -80,8 +80,8 @@ double light_of_openings(const SkyOpenings& openings, const tracing::SurfelTrace
         for (size_t k = 0; k < densities.size(); ++k) {
             const glm::vec3 middle = glm::vec3(openings.spheres()[k]) - point.position;
             const float radius = openings.spheres()[k].w;
-            if (densities[k] > 0 &&
-                glm::dot(ray, middle) > std::sqrt(glm::dot(middle, middle) - radius * radius))
+            if (densities[k] > 0 && glm::dot(ray, middle) > 0 &&
+                glm::length(glm::cross(ray, middle)) < radius)
                 all += densities[k];
         }
         own += ray.z / all / kBufferRays;
@@ -89,22 +89,21 @@ double light_of_openings(const SkyOpenings& openings, const tracing::SurfelTrace
     return sum;
 }
 
-/// Returns what a point on the floor receives through the window, by points all over it and its frame.
-double light_of_window(const tracing::SurfelTracer& tracer, const glm::vec2& at) {
-    const GatherPoint point = point_on_floor(at.x, at.y, 0);
+/// Returns what a point receives through a square across x that begins at `corner`, by even points of it.
+double light_through(const tracing::SurfelTracer& tracer, const GatherPoint& point, const glm::vec3& corner,
+                     float size) {
     const glm::vec3 start = tracing::offset_origin(point.position, kZ, point.lift);
     constexpr int kPoints = 300;
-    constexpr float kSize = 0.6f, kArea = kSize * kSize / (kPoints * kPoints);
     double sum = 0;
     for (int j = 0; j < kPoints; ++j)
         for (int i = 0; i < kPoints; ++i) {
-            const glm::vec3 to =
-                glm::vec3(4, 1.2f, 2.1f) + kSize / kPoints * (kY * (i + 0.5f) + kZ * (j + 0.5f)) - start;
+            const glm::vec3 at(0, static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f);
+            const glm::vec3 to = corner + size / kPoints * at - start;
             const float distance2 = glm::dot(to, to);
             const glm::vec3 ray = to / std::sqrt(distance2);
-            if (!tracer.occluded_along(start, ray)) sum += ray.z * ray.x * kArea / (kPi * distance2);
+            if (!tracer.occluded_along(start, ray)) sum += ray.z * ray.x / distance2;
         }
-    return sum;
+    return sum * size * size / (kPi * kPoints * kPoints);
 }
 
 TEST(SkyOpenings, RaysOfBothKindsAddUpToTheSky) {
@@ -124,11 +123,39 @@ TEST(SkyOpenings, RaysOfBothKindsAddUpToTheSky) {
             squares += light * light / kSeeds;
             own_sum += own / kSeeds;
         }
-        EXPECT_NEAR(sum / light_of_window(*tracer, at), 1, 0.02) << at.x << " " << at.y;
+        EXPECT_NEAR(sum / light_through(*tracer, point_on_floor(at.x, at.y, 0), {4, 1.2f, 2.1f}, 0.6f), 1,
+                    0.02)
+            << at.x << " " << at.y;
         EXPECT_LT(own_sum / sum, 0.3);
         // Buffers alone would find so little of their rays: a variance of the mean over their number.
         EXPECT_LT(squares - sum * sum, 0.2 * sum / kBufferRays);
     }
+}
+
+// Cones of spheres that are hundreds of radii away are narrower than what floats resolve of a cosine.
+TEST(SkyOpenings, PointsFarFromOpeningsReceiveNoMoreThanTheSky) {
+    std::vector<Surfel> hall = scenes::closed_box(40, 200, glm::vec3(0.5f));
+    std::erase_if(hall, [](const Surfel& s) {
+        return s.position.x > 39.9f && std::abs(s.position.y - 20) < 0.6f &&
+               std::abs(s.position.z - 1.6f) < 0.5f;
+    });
+    const auto tracer = tracer_of(std::move(hall));
+    ASSERT_TRUE(tracer);
+    std::vector<GatherPoint> pilots = pilots_on_floor();
+    for (GatherPoint& pilot : pilots) pilot.position = pilot.position + glm::vec3(35.9f, 18, 0);
+    const GatherSky sky = even_sky(1);
+    const SkyOpenings openings = SkyOpenings::find(*tracer, sky, pilots, 3);
+    ASSERT_FALSE(openings.empty());
+    double sum = 0;
+    for (uint32_t i = 0; i < 200; ++i) {
+        double own = 0;
+        sum += light_of_openings(openings, *tracer, point_on_floor(1, 20, i), own) / 200;
+        sum += own / 200;
+    }
+    // What no sphere covers is met by hardly any even ray.
+    const double part = sum / light_through(*tracer, point_on_floor(1, 20, 0), {40, 18.8f, 0.4f}, 2.4f);
+    EXPECT_GT(part, 0.8);
+    EXPECT_LT(part, 1.02);
 }
 
 TEST(SkyOpenings, NoneAreFoundWhereThereAreNoneOrTheSkyIsWide) {
