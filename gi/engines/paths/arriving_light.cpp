@@ -94,7 +94,7 @@ void ArrivingLight::set(std::span<const glm::vec3> radiosity, const PointSky* sk
             for (size_t ray = point * paths.rays_a_point; ray < (point + 1) * paths.rays_a_point; ++ray) {
                 glm::vec3& light = light_[point * kCells + cell_of_[ray]];
                 if (paths.rays[ray] == kNone) {
-                    if (sky) light += kPi * sky->radiance(point)[open++];
+                    if (sky) light += kPi * sky->radiance(point, open++);
                 } else if (!radiosity.empty()) {
                     light += radiosity[paths.rays[ray]];
                 }

@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "gi/engines/paths/cosine_rays.h"
+#include "gi/lighting/sky_directions.h"
 #include "gi/lighting/sky_grid.h"
 #include "gi/shared/brdf.h"
+#include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
 
@@ -41,16 +43,24 @@ PointSky::PointSky(std::shared_ptr<const PathsBake> bake) : bake_(std::move(bake
     });
 }
 
+glm::vec3 PointSky::radiance(size_t point, size_t ray) const {
+    return sky_->texels.empty() ? glm::vec3(0.0f)
+                                : sky_->radiance(decode_octahedral(open_[first_[point] + ray]));
+}
+
 void PointSky::set(const GatherSky& sky) {
     irradiance_.assign(bake_->paths.points.size(), glm::vec3(0.0f));
-    radiance_.assign(open_.size(), glm::vec3(0.0f));
+    luminances_.assign(kSkyCells, 0.0f);
+    sky_ = &sky;
     if (sky.texels.empty()) return;
+    for (uint32_t cell = 0; cell < kSkyCells; ++cell)
+        luminances_[cell] = luminance(sky.radiance(sky_direction(cell, 0.5, 0.5)));
     const float share = kPi / static_cast<float>(bake_->paths.rays_a_point);
     parallel_ranges(irradiance_.size(), kSkiesATask, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             glm::vec3 sum(0.0f);
             for (uint32_t open = first_[i]; open < first_[i + 1]; ++open)
-                sum += radiance_[open] = sky.radiance(decode_octahedral(open_[open]));
+                sum += sky.radiance(decode_octahedral(open_[open]));
             irradiance_[i] = share * sum;
         }
     });

@@ -32,13 +32,11 @@ class Guide {
     Guide(const PointSky& sky, std::span<const PointShare> about, const glm::vec3& normal)
         : normal_(normal), weights_(kSkyCells, 0.0f) {
         for (const PointShare& share : about) {
-            const std::span cells = sky.cells(share.point);
-            const std::span radiance = sky.radiance(share.point);
-            for (size_t i = 0; i < cells.size(); ++i) {
-                const float weight = share.share * luminance(radiance[i]);
+            for (const uint16_t cell : sky.cells(share.point)) {
+                const float weight = share.share * sky.luminances()[cell];
                 if (!(weight > 0)) continue;
-                if (weights_[cells[i]] == 0) cells_.push_back(cells[i]);
-                weights_[cells[i]] += weight;
+                if (weights_[cell] == 0) cells_.push_back(cell);
+                weights_[cell] += weight;
             }
         }
         for (const uint32_t cell : cells_) sums_.push_back(total_ += weights_[cell]);
