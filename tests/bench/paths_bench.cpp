@@ -66,6 +66,7 @@ Result<void> bench_frames(gi::Device& device, const Scan& scan, const BenchRun& 
     gi::EngineSettings settings = stage.settings();
     settings.set(gi::kBounces, kBounces);
     const auto glide = [&](int) -> Result<void> {
+        stage.request().moving = true;  // by shadow maps, as in the window
         stage.request().camera.position.x += .001;
         return {};
     };
@@ -92,6 +93,7 @@ Result<void> bench_frames(gi::Device& device, const Scan& scan, const BenchRun& 
         row("512x512, paths, the camera moves: beyond direct light", moved.milliseconds - direct, "ms", 20);
         figure("  of all cores", moved.processor - direct_cpu, "ms");
     }
+    stage.request().moving = false;
     LUCARNE_ASSIGN(const auto edited, stage.frames_after(run.frames(5), dim));
     print_relight("materials edited: light anew, four bounces", edited, 120);
     LUCARNE_ASSIGN(const auto lamp, stage.frames_after(run.frames(5), move_lamp));
