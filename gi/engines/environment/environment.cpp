@@ -42,7 +42,7 @@ constexpr EngineInfo kInfo{
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 340 MB
 /// Places between which light is exchanged are this much farther apart than caches.
-constexpr float kCoarser = 2;
+constexpr float kCoarser = 4;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
