@@ -1,4 +1,4 @@
-// Says which discs of a cache the rays through pixels of its first view meet, to find why a pixel is wrong:
+// Prints which discs of a cache the rays through pixels of its first view meet, to find why a pixel is wrong:
 //   disc_probe CACHE MOOD WIDTHxHEIGHT [SCENE|-] [X,Y ...]
 //   disc_probe CACHE MOOD WIDTHxHEIGHT SCENE --map GBUFFER.exr MAP.png
 // With the name of the virtual scene that was scanned (`lucarne generate`) each disc is compared with the

@@ -86,9 +86,9 @@ class PathsEngine final : public Engine {
     Buffer materials_;
     Sky sky_;
     GatherSky even_sky_;
-    SkyDirections bright_sky_;             ///< what few rays would miss of it
+    SkyDirections bright_sky_;             ///< its very bright part, which few rays would miss
     std::optional<uint64_t> even_sky_of_;  ///< revision of the environment that both are made from
-    std::optional<PointSky> point_sky_;    ///< even_sky_ at the points of the bake, once they show it
+    std::optional<PointSky> point_sky_;    ///< even_sky_ at the points of the bake; made on first use
     std::optional<uint64_t> point_sky_of_;
     LightGBuffers light_gbuffers_;
     uint64_t light_index_ = 0;                       ///< Frame::index by which lights with a size are sampled

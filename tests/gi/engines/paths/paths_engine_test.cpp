@@ -41,6 +41,15 @@ class PathsEngine : public OnDevice {
         OnDevice::TearDown();
     }
     static Light lamp(float x) { return scenes::spot({x, .9f, 1.7f}, {1, 1, 0}, .6f, .6f, 5); }
+    /// Leaves the ceiling out, and lights the box by the sky instead of the lamp.
+    void open_the_box() {
+        auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
+        std::erase_if(surfels, [](const Surfel& s) { return s.normal.z < -.5f; });
+        cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
+        options_.bake = nullptr;
+        options_.lights.clear();
+        options_.environment = scenes::even_sky(1);
+    }
     Lit draw() { return light_up(*device, *engine_, *cloud_, camera_, options_); }
     /// Draws with an engine that has drawn nothing before, and computes everything in advance anew.
     Lit draw_anew() {
@@ -183,12 +192,7 @@ TEST_F(PathsEngine, WithoutABakeItShowsDirectLight) {
 
 TEST_F(PathsEngine, TheSkyLightsAnOpenBoxAsItsLinksSay) {
     // Without its ceiling the box is lit by the sky; both ways of the sky's light agree.
-    auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
-    std::erase_if(surfels, [](const Surfel& s) { return s.normal.z < -.5f; });
-    cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
-    options_.bake = nullptr;
-    options_.lights.clear();
-    options_.environment = scenes::even_sky(1);
+    open_the_box();
     options_.settings.set(kOnlyBounce, 1);
     options_.settings.set(*find_option("light_samples"), int64_t{128});
     const Lit by_links = draw();
@@ -202,12 +206,7 @@ TEST_F(PathsEngine, TheSkyLightsAnOpenBoxAsItsLinksSay) {
 }
 
 TEST_F(PathsEngine, PixelsSeeTheSkyByGatheringRaysAndWherePointsDisagreeByTheirOwn) {
-    auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
-    std::erase_if(surfels, [](const Surfel& s) { return s.normal.z < -.5f; });
-    cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
-    options_.bake = nullptr;
-    options_.lights.clear();
-    options_.environment = scenes::even_sky(1);
+    open_the_box();
     options_.settings.set(kOnlyBounce, 0);
     options_.settings.set(reference::kSamples, 512);
     const Lit lit = draw(), exact = light_up(*device, **make_engine("reference"), *cloud_, camera_, options_);
@@ -222,8 +221,11 @@ TEST_F(PathsEngine, PixelsSeeTheSkyByGatheringRaysAndWherePointsDisagreeByTheirO
     options_.moving = false;
     options_.environment = scenes::even_sky(2);
     EXPECT_EQ(draw().radiance, draw_anew().radiance);
-    options_.materials[1] = scenes::material(.5f, .4f, 20);
-    EXPECT_EQ(draw().radiance, draw_anew().radiance) << "lobes reflect it as well";
+    const Lit diffuse = draw();
+    options_.materials[0] = scenes::material(.5f, .4f, 20);
+    const Lit glossy = draw();
+    EXPECT_NE(glossy.radiance, diffuse.radiance);
+    EXPECT_EQ(glossy.radiance, draw_anew().radiance) << "lobes reflect it as well";
     options_.settings.set(kOnlyBounce, -1);
     EXPECT_EQ(draw().radiance, draw_anew().radiance) << "with what is reflected further";
 }
