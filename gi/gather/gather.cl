@@ -79,7 +79,7 @@ float3 ray_of(Place place, int pixel) {
 }
 
 // Sets the directions of all pixels, zero where there is none above the surface, and an empty picture.
-void clear(Place place, Rays* directions, float* depths, uint* slots) {
+void clear(Place place, float* directions, float* depths, uint* slots) {
     for (int i = 0; i < PIXELS; i += 8) {
         float8 x = vload8(0, place.set + i), y = vload8(0, place.set + PIXELS + i);
         int8 none = x > 1.0f;
@@ -93,19 +93,18 @@ void clear(Place place, Rays* directions, float* depths, uint* slots) {
         dx = select(dx, (float8)(0.0f), none);
         dy = select(dy, (float8)(0.0f), none);
         dz = select(dz, (float8)(0.0f), none);
-        vstore8(dx, 0, directions->rows + i);
-        vstore8(dy, 0, directions->rows + PIXELS + i);
-        vstore8(dz, 0, directions->rows + 2 * PIXELS + i);
-        for (int k = 0; k < 8; ++k)
-            directions->each[i + k] = (float4)(((float*)&dx)[k], ((float*)&dy)[k], ((float*)&dz)[k], 0.0f);
+        vstore8(dx, 0, directions + i);
+        vstore8(dy, 0, directions + RAYS + i);
+        vstore8(dz, 0, directions + 2 * RAYS + i);
         vstore8((float8)(NOTHING), 0, depths + i);
         vstore8((uint8)(EMPTY), 0, slots + i);
     }
-    for (int i = 0; i < MOST_SMALL * (ROW + 1); ++i) directions->each[PIXELS + i] = (float4)(0.0f);
+    for (int i = PIXELS; i < RAYS; ++i)
+        directions[i] = directions[RAYS + i] = directions[2 * RAYS + i] = depths[i] = 0.0f;
 }
 
 // Draws what is above a place.
-void draw_place(global const WideNode* nodes, Place place, uint seed, Rays* directions, float* depths, uint* slots) {
+void draw_place(global const WideNode* nodes, Place place, uint seed, float* directions, float* depths, uint* slots) {
     clear(place, directions, depths, slots);
     draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, seed, depths,
          slots);
@@ -182,10 +181,10 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
     if (number >= count) return;
     GatherPoint point = points[number];
     Place place = place_of(nodes, point, rays, sets);
-    Rays directions;
-    float depths[PIXELS];
+    float directions[3 * RAYS];
+    float depths[RAYS];
     uint slots[PIXELS];
-    draw_place(nodes, place, point.seed, &directions, depths, slots);
+    draw_place(nodes, place, point.seed, directions, depths, slots);
 
     float3 sum = (float3)(0.0f);
     uint cast = 0, empty = 0;
@@ -194,7 +193,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
             int pixel = j * ROW + i;
             if (place.set[pixel] > 1.0f) continue;
             ++cast;
-            float3 direction = directions.each[pixel].xyz;
+            float3 direction = direction_of(directions, pixel);
             float height = dot(direction, place.normal);
             if (!(height > 0.0f)) continue;
             float3 ray = ray_of(place, pixel);
@@ -228,10 +227,10 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
     number += first;
     GatherPoint point = points[number];
     Place place = place_of(nodes, point, rays, sets);
-    Rays directions;
-    float depths[PIXELS];
+    float directions[3 * RAYS];
+    float depths[RAYS];
     uint slots[PIXELS];
-    draw_place(nodes, place, point.seed, &directions, depths, slots);
+    draw_place(nodes, place, point.seed, directions, depths, slots);
 
     global uint* sees = seen + number * (uint)(GRID * GRID);
     float near = 0.0f;
@@ -239,7 +238,7 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
     for (int j = 0; j < GRID; ++j)
         for (int i = 0; i < GRID; ++i) {
             int pixel = j * ROW + i;
-            float3 direction = directions.each[pixel].xyz;
+            float3 direction = direction_of(directions, pixel);
             uint code = kSeesNothing;
             if (place.set[pixel] <= 1.0f && dot(direction, place.normal) > 0.0f) {
                 ++cast;

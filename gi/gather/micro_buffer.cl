@@ -5,8 +5,9 @@
 #define GRID LUCARNE_GRID
 #define ROW LUCARNE_ROW
 #define PIXELS (GRID * ROW)
+#define RAYS ((GRID + 1) * ROW)  // with a row of room below the last, for what is drawn two rows at a time
 // Nodes are opened if their radius over their distance is larger. With buffers of 24^2 whole nodes are four pixels
-// across: rows of eight pixels cost as much as one, so smaller ones would only add work. Clouds are opened further, and
+// across: eight pixels cost as much as one, so smaller ones would only add work. Clouds are opened further, and
 // so are surfaces whose discs might appear half a pixel from where they are.
 #if LUCARNE_FILL_PIXELS
 #define LARGEST (1.0f / GRID)
@@ -16,7 +17,7 @@
 #define LARGEST_THICK fmin(2.0f / GRID, 0.1f)
 #endif
 #define THICKEST (0.7f / GRID)
-#define MOST_SMALL 4  // pixels along a side of what is drawn together with its neighbours
+#define FEW_COLUMNS 4  // what they hold is drawn two rows at a time
 #define STACK 456  // seven a level; trees of 2^32 surfels have at most 64 levels (kMedianLevel)
 #define EMPTY 0xffffffffu
 #define NOTHING 1e30f
@@ -144,11 +145,10 @@ bool hides(global const WideNode* node, int k, float x, float y, float z) {
     return (((bit >= 32u ? high : low) >> (bit & 31u)) & 1u) != 0u;
 }
 
-// The directions of all pixels, zero where a pixel has no ray.
-typedef struct {
-    float rows[3 * PIXELS];  // all x, all y, all z
-    float4 each[PIXELS + MOST_SMALL * (ROW + 1)];  // what is drawn side by side may reach beyond the last
-} Rays;
+// Returns the direction of a pixel. `rays`: x of all pixels, then all y, then all z; zero where a pixel has no ray.
+float3 direction_of(const float* rays, int pixel) {
+    return (float3)(rays[pixel], rays[RAYS + pixel], rays[2 * RAYS + pixel]);
+}
 
 // Eight children of a node, as they appear from a place.
 typedef struct {
@@ -178,88 +178,56 @@ void show(global const WideNode* node, int k, uint slot, int pixel, float t, flo
     slots[pixel] = slot;
 }
 
-// Draws one of eight children, which covers many pixels: eight of a row at a time.
-void draw_large(global const WideNode* node, Children* children, int k, uint slot, const float* rays, uint seed,
+// Draws one of eight children: eight pixels at a time, of two rows if four columns hold it. Rays beyond the pixels that
+// it may cover pass beside it.
+void draw_child(global const WideNode* node, const Children* children, int k, uint slot, const float* rays, uint seed,
                 float* depths, uint* slots) {
-    float x = ((float*)&children->dx)[k], y = ((float*)&children->dy)[k], z = ((float*)&children->dz)[k];
-    float3 axis = (float3)(((float*)&children->nx)[k], ((float*)&children->ny)[k], ((float*)&children->nz)[k]);
-    float plane = ((float*)&children->plane)[k];
-    int first = ((int*)&children->left)[k], last = ((int*)&children->right)[k], end = ((int*)&children->lower)[k];
+    float x = ((const float*)&children->dx)[k], y = ((const float*)&children->dy)[k];
+    float z = ((const float*)&children->dz)[k], plane = ((const float*)&children->plane)[k];
+    float nx = ((const float*)&children->nx)[k], ny = ((const float*)&children->ny)[k];
+    float nz = ((const float*)&children->nz)[k];
+    int left = ((const int*)&children->left)[k], right = ((const int*)&children->right)[k];
+    int upper = ((const int*)&children->upper)[k], lower = ((const int*)&children->lower)[k];
     float radius2 = node->bound[k] * node->bound[k];
     float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
     float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
     if (high.x == kCloud) low = (float3)(-NOTHING), high = (float3)(NOTHING);
-    for (int j = ((int*)&children->upper)[k]; j <= end; ++j)
-        for (int i = first; i <= last; i += 8) {
+    bool narrow = right - left < FEW_COLUMNS;
+    int other = narrow ? ROW : 4;  // where the second four of the eight pixels are, from the first four
+    for (int j = upper; j <= lower; j += narrow ? 2 : 1)
+        for (int i = left; i <= right; i += narrow ? FEW_COLUMNS : 8) {
             int pixel = j * ROW + i;
-            float8 rx = vload8(0, rays + pixel), ry = vload8(0, rays + PIXELS + pixel);
-            float8 rz = vload8(0, rays + 2 * PIXELS + pixel);
-            float8 t = plane / (rx * axis.x + ry * axis.y + rz * axis.z);
+            const float *at_x = rays + pixel, *at_y = at_x + RAYS, *at_z = at_y + RAYS, *depth = depths + pixel;
+            float8 rx = (float8)(vload4(0, at_x), vload4(0, at_x + other));
+            float8 ry = (float8)(vload4(0, at_y), vload4(0, at_y + other));
+            float8 rz = (float8)(vload4(0, at_z), vload4(0, at_z + other));
+            float8 nearest = (float8)(vload4(0, depth), vload4(0, depth + other));
+            float8 t = plane / (rx * nx + ry * ny + rz * nz);
             float8 ox = rx * t - x, oy = ry * t - y, oz = rz * t - z;
-            int8 met = (t > 0.0f) & (t <= vload8(0, depths + pixel)) & (ox * ox + oy * oy + oz * oz <= radius2);
-            met &= (ox >= low.x) & (ox <= high.x) & (oy >= low.y) & (oy <= high.y);
-            met &= (oz >= low.z) & (oz <= high.z);
+            // Few comparisons: each costs more than arithmetic.
+            float8 room = LEAST(LEAST(ox - low.x, high.x - ox), LEAST(oy - low.y, high.y - oy));
+            room = LEAST(room, LEAST(oz - low.z, high.z - oz));
+            int8 met = (t > 0.0f) & (t <= nearest) & (ox * ox + oy * oy + oz * oz <= radius2) & (room >= 0.0f);
             if (!any_of(met)) continue;
             for (int lane = 0; lane < 8; ++lane)
                 if (((int*)&met)[lane])
-                    show(node, k, slot, pixel + lane, ((float*)&t)[lane], ((float*)&ox)[lane], ((float*)&oy)[lane],
-                         ((float*)&oz)[lane], seed, depths, slots);
-        }
-}
-
-// Draws those of eight children that cover few pixels: one pixel of each at a time. Most rays pass beside them, so what
-// is left to do for those that do not is done for each by itself.
-void draw_small(global const WideNode* node, Children* children, int8 small, uint first_slot, const float4* rays,
-                uint seed, float* depths, uint* slots) {
-    float8 dx = children->dx, dy = children->dy, dz = children->dz;
-    float8 nx = children->nx, ny = children->ny, nz = children->nz, plane = children->plane;
-    float8 radius = vload8(0, node->bound), radius2 = radius * radius;
-    float8 low_x = select(vload8(0, node->low_x), (float8)(-NOTHING), children->cloud);
-    float8 low_y = select(vload8(0, node->low_y), (float8)(-NOTHING), children->cloud);
-    float8 low_z = select(vload8(0, node->low_z), (float8)(-NOTHING), children->cloud);
-    float8 high_x = select(vload8(0, node->high_x), (float8)(NOTHING), children->cloud);
-    float8 high_y = select(vload8(0, node->high_y), (float8)(NOTHING), children->cloud);
-    float8 high_z = select(vload8(0, node->high_z), (float8)(NOTHING), children->cloud);
-    int8 width = select((int8)(0), children->right - children->left + 1, small);
-    int8 height = select((int8)(0), children->lower - children->upper + 1, small);
-    int most_wide = largest_of(width), most_tall = largest_of(height);
-    int corners[8];
-    vstore8(select((int8)(0), children->upper * ROW + children->left, small), 0, corners);
-    for (int j = 0; j < most_tall; ++j)
-        for (int i = 0; i < most_wide; ++i) {
-            const float4* pixel = rays + (j * ROW + i);
-            float4 r0 = pixel[corners[0]], r1 = pixel[corners[1]], r2 = pixel[corners[2]], r3 = pixel[corners[3]];
-            float4 r4 = pixel[corners[4]], r5 = pixel[corners[5]], r6 = pixel[corners[6]], r7 = pixel[corners[7]];
-            float8 rx = (float8)(r0.x, r1.x, r2.x, r3.x, r4.x, r5.x, r6.x, r7.x);
-            float8 ry = (float8)(r0.y, r1.y, r2.y, r3.y, r4.y, r5.y, r6.y, r7.y);
-            float8 rz = (float8)(r0.z, r1.z, r2.z, r3.z, r4.z, r5.z, r6.z, r7.z);
-            float8 t = plane / (rx * nx + ry * ny + rz * nz);
-            float8 ox = rx * t - dx, oy = ry * t - dy, oz = rz * t - dz;
-            // Few comparisons: each costs more than arithmetic.
-            float8 room = LEAST(LEAST(ox - low_x, high_x - ox), LEAST(oy - low_y, high_y - oy));
-            room = LEAST(room, LEAST(oz - low_z, high_z - oz));
-            float8 most = select((float8)(-1.0f), radius2, (width > i) & (height > j));
-            int8 met = (ox * ox + oy * oy + oz * oz <= most) & (room >= 0.0f) & (t > 0.0f);
-            if (!any_of(met)) continue;
-            for (int k = 0; k < 8; ++k)
-                if (((int*)&met)[k])
-                    show(node, k, first_slot + (uint)k, corners[k] + j * ROW + i, ((float*)&t)[k], ((float*)&ox)[k],
-                         ((float*)&oy)[k], ((float*)&oz)[k], seed, depths, slots);
+                    show(node, k, slot, pixel + (lane & 3) + (lane >> 2) * other, ((float*)&t)[lane],
+                         ((float*)&ox)[lane], ((float*)&oy)[lane], ((float*)&oz)[lane], seed, depths, slots);
         }
 }
 
 // Draws each of eight children as the pixel at its middle, if that pixel has a ray: the paper's buffers without ray
 // casting (fig. 11).
-void fill_pixels(int8 drawn, int8 columns, int8 rows, float8 distances, uint first_slot, const float4* rays,
+void fill_pixels(int8 drawn, int8 columns, int8 rows, float8 distances, uint first_slot, const float* rays,
                  float* depths, uint* slots) {
     for (int k = 0; k < 8; ++k) {
         int i = ((int*)&columns)[k], j = ((int*)&rows)[k], pixel = j * ROW + i;
         if (!((int*)&drawn)[k] || i < 0 || i >= GRID || j < 0 || j >= GRID) continue;
-        float4 ray = rays[pixel];
+        float3 ray = direction_of(rays, pixel);
         float distance = ((float*)&distances)[k];
         uint slot = first_slot + (uint)k;
         bool nearest = distance < depths[pixel] || (distance == depths[pixel] && slot < slots[pixel]);
-        if (dot(ray.xyz, ray.xyz) == 0.0f || !nearest) continue;
+        if (dot(ray, ray) == 0.0f || !nearest) continue;
         depths[pixel] = distance;
         slots[pixel] = slot;
     }
@@ -268,7 +236,7 @@ void fill_pixels(int8 drawn, int8 columns, int8 rows, float8 distances, uint fir
 // Draws everything above the plane through `start` into the picture: for each pixel the distance of the nearest disc
 // and its slot. `side` and `across` are the axes of the picture, which reaches to `scale` along them; `rays` are the
 // directions of its pixels, zero where a pixel has no ray.
-void draw(global const WideNode* nodes, const Rays* rays, float3 start, float3 side, float3 across, float3 axis,
+void draw(global const WideNode* nodes, const float* rays, float3 start, float3 side, float3 across, float3 axis,
           float3 normal, float scale, uint seed, float* depths, uint* slots) {
     float pixels = 0.5f * GRID / scale;
     int stack[STACK];
@@ -307,8 +275,8 @@ void draw(global const WideNode* nodes, const Rays* rays, float3 start, float3 s
         float8 uy = (dx * across.x + dy * across.y + dz * across.z) * nearer;
         float8 px = ux * c + (0.5f * GRID - 0.5f), py = uy * c + (0.5f * GRID - 0.5f);
 #if LUCARNE_FILL_PIXELS
-        fill_pixels(drawn, convert_int8_rte(px), convert_int8_rte(py), distance2 * nearer, (uint)at * 8, rays->each,
-                    depths, slots);
+        fill_pixels(drawn, convert_int8_rte(px), convert_int8_rte(py), distance2 * nearer, (uint)at * 8, rays, depths,
+                    slots);
         continue;
 #endif
         float8 wide = s * sqrt(fmax(1.0f - ux * ux, 0.0f)) * pixels + 0.5f;
@@ -331,13 +299,9 @@ void draw(global const WideNode* nodes, const Rays* rays, float3 start, float3 s
         children.lower = convert_int8(fmin(floor(py + tall), GRID - 1.0f));
         int8 columns = children.right - children.left + 1, rows = children.lower - children.upper + 1;
         drawn &= (columns > 0) & (rows > 0);
-        int8 small = drawn & (columns <= MOST_SMALL) & (rows <= MOST_SMALL);
-        if (any_of(small)) draw_small(node, &children, small, (uint)at * 8, rays->each, seed, depths, slots);
-        int8 others = drawn & ~small;
-        if (!any_of(others)) continue;
         int draws[8];
-        vstore8(others, 0, draws);
+        vstore8(drawn, 0, draws);
         for (int k = 0; k < 8; ++k)
-            if (draws[k]) draw_large(node, &children, k, (uint)(at * 8 + k), rays->rows, seed, depths, slots);
+            if (draws[k]) draw_child(node, &children, k, (uint)(at * 8 + k), rays, seed, depths, slots);
     }
 }
