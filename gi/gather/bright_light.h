@@ -31,6 +31,8 @@ class BrightLight {
     bool empty() const { return vpls_.empty(); }
     /// Of each slot: what of its radiance VPLs bring to far points, W/(sr m^2).
     std::span<const SideLight> excess() const { return excess_; }
+    /// Frees excess(), which nothing here needs.
+    void drop_excess() { excess_ = {}; }
     float reach2() const { return reach2_; }  ///< m^2
 
     /// Returns the mean radiance, as Gatherer::gather() has it, that the VPLs bring to a point. `number`

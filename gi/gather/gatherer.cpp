@@ -54,15 +54,14 @@ Result<std::vector<float>> MicroBuffers::nearness() const {
     return result;
 }
 
-Result<void> Gatherer::set_tree(ClDevice& device, const SurfelTree& tree) {
+Result<void> Gatherer::set_tree(ClDevice& device, const std::shared_ptr<const SurfelTree>& tree) {
     ++tree_;
     set_no_bright();
     openings_ = nullptr;
-    empty_ = tree.empty();
-    const WideNode nothing = empty_node();
-    const auto bytes = std::as_bytes(empty_ ? std::span(&nothing, 1) : std::span(tree.nodes));
-    LUCARNE_TRY(device.reserve(nodes_, bytes.size(), "tree of surfels"));
-    return nodes_.upload(0, bytes);
+    empty_ = !tree || tree->empty();
+    if (!empty_) return device.lend(nodes_, std::as_bytes(std::span(tree->nodes)), tree, "tree of surfels");
+    const auto nothing = std::make_shared<const WideNode>(empty_node());
+    return device.lend(nodes_, std::as_bytes(std::span(nothing.get(), 1)), nothing, "tree of surfels");
 }
 
 Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> slots) {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -47,8 +48,9 @@ class MicroBuffers {
 /// Gathers the light of a tree of surfels at points, on an OpenCL device (gather.cl).
 class Gatherer {
  public:
-    /// Sends the tree to the device. Errors: device memory.
-    Result<void> set_tree(ClDevice& device, const SurfelTree& tree);
+    /// Sends the tree to the device, or lends it to a processor (ClDevice::lend()); null: none. Errors:
+    /// device memory.
+    Result<void> set_tree(ClDevice& device, const std::shared_ptr<const SurfelTree>& tree);
     /// Sends the light of the tree's slots (pull_light()). Errors: device memory.
     Result<void> set_light(ClDevice& device, std::span<const SideLight> slots);
     /// Sends specular light to the device, which the slots send out beside that of set_light() until it is

@@ -3,10 +3,10 @@
 namespace lucarne::gi {
 
 Result<void> LitTree::set_surfels(Frame& frame) {
-    tree_ = {};
+    tree_ = std::make_shared<SurfelTree>();
     lobes_ = {};
     LUCARNE_TRY(lit_.set_surfels(frame));
-    tree_ = build_tree(lit_.surfels());
+    tree_ = std::make_shared<SurfelTree>(build_tree(lit_.surfels()));
     return {};
 }
 
@@ -20,8 +20,8 @@ Result<void> LitTree::set_light(Frame& frame, const std::vector<LightView>& view
 SideLobes LitTree::pulled(const SideLobes& by_surfel) const {
     SideLobes slots;
     if (by_surfel.light.empty()) return slots;
-    pull_light(tree_, by_surfel.light, slots.light);
-    pull_light(tree_, by_surfel.directions, slots.directions);
+    pull_light(*tree_, by_surfel.light, slots.light);
+    pull_light(*tree_, by_surfel.directions, slots.directions);
     return slots;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,9 @@ class LitTree {
     /// Errors likewise. Specular reflection is not in own_light() but in lobes().
     Result<void> set_light(Frame& frame, const std::vector<LightView>& views, LightGBuffers& gbuffers);
 
-    const SurfelTree& tree() const { return tree_; }
+    const SurfelTree& tree() const { return *tree_; }
+    /// The same, for who keeps it after the next set_surfels().
+    std::shared_ptr<const SurfelTree> kept_tree() const { return tree_; }
     std::span<const FlatSurfel> surfels() const { return lit_.surfels(); }
     std::span<const SideLight> own_light() const { return lit_.own_light(); }
     /// Of each slot of the tree: what its surfels reflect of the lights by their specular lobes; empty if
@@ -32,7 +35,7 @@ class LitTree {
     SideLobes pulled(const SideLobes& by_surfel) const;
 
  private:
-    SurfelTree tree_;
+    std::shared_ptr<const SurfelTree> tree_ = std::make_shared<SurfelTree>();
     LitSurfels lit_;
     SideLobes lobes_;
 };

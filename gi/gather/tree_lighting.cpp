@@ -54,8 +54,9 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
     LUCARNE_TRY(gatherer_.set_openings(*opencl_, nullptr));
     openings_ = {};
     traced_.reset();
+    LUCARNE_TRY(gatherer_.set_tree(*opencl_, nullptr));  // the old one needs no memory beside the new one
     LUCARNE_TRY(lit_.set_surfels(frame));
-    LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.tree()));
+    LUCARNE_TRY(gatherer_.set_tree(*opencl_, lit_.kept_tree()));
     tree_of_ = cuts_.light;
     return {};
 }
@@ -130,6 +131,7 @@ Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<con
     bright_light_ = BrightLight::find(lit_, *traced_, slots_, pilots, typical, seed, frame.stop);
     if (bright_light_.empty()) return nullptr;
     LUCARNE_TRY(gatherer_.set_bright(*opencl_, bright_light_.excess(), bright_light_.reach2()));
+    bright_light_.drop_excess();
     return &bright_light_;
 }
 

@@ -9,10 +9,10 @@
 
 namespace lucarne::gi {
 
-Result<ClBuffer> ClBuffer::make(ClContext& context, size_t bytes, std::string_view what) {
+Result<ClBuffer> ClBuffer::create(ClContext& context, size_t bytes, const std::byte* lent,
+                                  std::string_view what) {
     constexpr const char* kTodo = "raise --device-memory, or lower --points";
     LUCARNE_TRY(context.usable());
-    bytes = std::max<size_t>(bytes, 16);
     const ClDeviceInfo& info = context.info();
     if (bytes > info.max_buffer_bytes)
         return failed(std::string(what),
@@ -21,7 +21,9 @@ Result<ClBuffer> ClBuffer::make(ClContext& context, size_t bytes, std::string_vi
                       kTodo);
     LUCARNE_TRY(context.memory().take(bytes, what));
     cl_int problem = CL_SUCCESS;
-    const cl_mem memory = clCreateBuffer(context.context(), CL_MEM_READ_WRITE, bytes, nullptr, &problem);
+    const cl_mem memory = clCreateBuffer(
+        context.context(), lent ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR : CL_MEM_READ_WRITE, bytes,
+        const_cast<std::byte*>(lent), &problem);  // OpenCL has no other word for memory that is only read
     if (problem != CL_SUCCESS) {
         context.memory().give_back(bytes);
         LUCARNE_TRY(context.check_loss(problem));
@@ -35,16 +37,29 @@ Result<ClBuffer> ClBuffer::make(ClContext& context, size_t bytes, std::string_vi
     return made;
 }
 
+Result<ClBuffer> ClBuffer::make(ClContext& context, size_t bytes, std::string_view what) {
+    return create(context, std::max<size_t>(bytes, 16), nullptr, what);
+}
+
+Result<ClBuffer> ClBuffer::lend(ClContext& context, std::span<const std::byte> data,
+                                std::shared_ptr<const void> owner, std::string_view what) {
+    LUCARNE_ASSIGN(ClBuffer made, create(context, data.size(), data.data(), what));
+    made.owner_ = std::move(owner);
+    return made;
+}
+
 ClBuffer& ClBuffer::operator=(ClBuffer&& other) noexcept {
     std::swap(context_, other.context_);
     std::swap(memory_, other.memory_);
     std::swap(bytes_, other.bytes_);
+    std::swap(owner_, other.owner_);
     return *this;
 }
 
 ClBuffer::~ClBuffer() {
     if (!memory_) return;
-    clReleaseMemObject(memory_);  // the driver keeps it until queued work that uses it is done
+    if (owner_) clFinish(context_->queue());  // queued work may still read what is lent
+    clReleaseMemObject(memory_);              // the driver keeps it until queued work that uses it is done
     context_->memory().give_back(bytes_);
 }
 

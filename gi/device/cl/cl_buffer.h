@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -30,12 +31,18 @@ class ClBuffer {
  private:
     friend class ClDevice;
     friend class ClKernel;
-    /// See ClDevice::buffer().
+    /// See ClDevice::buffer() and ClDevice::lend().
     static Result<ClBuffer> make(ClContext& context, size_t bytes, std::string_view what);
+    static Result<ClBuffer> lend(ClContext& context, std::span<const std::byte> data,
+                                 std::shared_ptr<const void> owner, std::string_view what);
+    /// `lent`: the host's memory that the device reads; null: memory of the device.
+    static Result<ClBuffer> create(ClContext& context, size_t bytes, const std::byte* lent,
+                                   std::string_view what);
 
     ClContext* context_ = nullptr;
     _cl_mem* memory_ = nullptr;
     size_t bytes_ = 0;
+    std::shared_ptr<const void> owner_;  ///< of what is lent
 };
 
 }  // namespace lucarne::gi

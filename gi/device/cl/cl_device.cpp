@@ -20,6 +20,18 @@ Result<void> ClDevice::reserve(ClBuffer& target, size_t bytes, std::string_view 
     return {};
 }
 
+Result<void> ClDevice::lend(ClBuffer& target, std::span<const std::byte> data,
+                            std::shared_ptr<const void> owner, std::string_view what) {
+    target = ClBuffer();
+    if (data.empty()) return failed(std::string(what), "there is nothing to send to the OpenCL device");
+    if (info().is_gpu) {
+        LUCARNE_ASSIGN(target, buffer(data.size(), what));
+        return target.upload(0, data);
+    }
+    LUCARNE_ASSIGN(target, ClBuffer::lend(*context_, data, std::move(owner), what));
+    return {};
+}
+
 Result<void> ClDevice::build(ClProgram& program, const Key& key, const std::vector<ShaderText>& texts) {
     const auto& [path, defines] = key;
     LUCARNE_ASSIGN(ShaderSource source, shader_source(path, defines, texts, ShaderLanguage::opencl));

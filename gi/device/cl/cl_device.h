@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -41,6 +42,11 @@ class ClDevice {
     Result<ClBuffer> buffer(size_t bytes, std::string_view what);
     /// Grows `buffer` to at least `bytes`; growing loses its contents. Errors as for buffer().
     Result<void> reserve(ClBuffer& buffer, size_t bytes, std::string_view what);
+    /// Makes `buffer` hold `data`, which kernels only read. A processor reads it where it is, so `owner`
+    /// keeps it as long as the buffer is in use, and it must not change; any other device gets a copy. Empty
+    /// data is an error, as are those of buffer().
+    Result<void> lend(ClBuffer& buffer, std::span<const std::byte> data, std::shared_ptr<const void> owner,
+                      std::string_view what);
     /// Returns the function `name` of an embedded source ("gi/engines/micro/gather.cl"). A source is compiled
     /// once for each set of defines, whatever the number of its kernels. The pointer is valid as long as the
     /// device. Includes are resolved as in shaders, and files are read from Device::use_shader_folder() as

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -27,9 +28,9 @@ class GathererTest : public testing::Test {
     }
     std::vector<glm::vec4> gather(std::span<const FlatSurfel> surfels, std::span<const SideLight> light,
                                   std::span<const GatherPoint> points, uint32_t side = 24) {
-        const SurfelTree tree = build_tree(surfels);
+        const auto tree = std::make_shared<SurfelTree>(build_tree(surfels));
         std::vector<SideLight> slots;
-        pull_light(tree, light, slots);
+        pull_light(*tree, light, slots);
         Gatherer gatherer;
         EXPECT_TRUE(gatherer.set_tree(*opencl_, tree));
         EXPECT_TRUE(gatherer.set_light(*opencl_, slots));
@@ -129,9 +130,9 @@ TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
     std::vector<SideLight> light(surfels.size());
     for (size_t i = 0; i < light.size(); ++i)
         light[i] = {glm::vec3(static_cast<float>(i % 7)), glm::vec3(static_cast<float>(i % 5))};
-    const SurfelTree tree = build_tree(surfels);
+    const auto tree = std::make_shared<SurfelTree>(build_tree(surfels));
     std::vector<SideLight> slots;
-    pull_light(tree, light, slots);
+    pull_light(*tree, light, slots);
     Gatherer gatherer;
     ASSERT_TRUE(gatherer.set_tree(*opencl_, tree));
     ASSERT_TRUE(gatherer.set_light(*opencl_, slots));
@@ -149,12 +150,12 @@ TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
     ASSERT_TRUE(seen);
     for (const uint32_t code : *seen)
         if (code < kSeesSky) {
-            ASSERT_NE(tree.nodes[code / 16].child[code / 2 % 8], kNoChild);
+            ASSERT_NE(tree->nodes[code / 16].child[code / 2 % 8], kNoChild);
         }
     // Buffers of the same points stay as they are, and are drawn again for another tree.
     ASSERT_TRUE(gatherer.see(*opencl_, points, 16, 1, buffers));
     EXPECT_EQ(*buffers.seen(), *seen);
-    ASSERT_TRUE(gatherer.set_tree(*opencl_, {}));
+    ASSERT_TRUE(gatherer.set_tree(*opencl_, nullptr));
     ASSERT_TRUE(gatherer.see(*opencl_, points, 16, 1, buffers));
     const auto of_nothing = buffers.seen();
     EXPECT_TRUE(std::ranges::all_of(*of_nothing, [](uint32_t code) { return code >= kSeesSky; }));
@@ -169,7 +170,7 @@ TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
 // lies behind the turned plane counts as nothing, not as less than nothing.
 TEST_F(GathererTest, LightForTurnedNormalsCountsNothingFromBehind) {
     Gatherer gatherer;
-    ASSERT_TRUE(gatherer.set_tree(*opencl_, {}));
+    ASSERT_TRUE(gatherer.set_tree(*opencl_, nullptr));
     ASSERT_TRUE(gatherer.set_sky(*opencl_, {.width = 8, .height = 4, .texels{32, glm::vec3(1.0f)}}));
     const std::vector<GatherPoint> points = floor_points(1, 0.01f, 64);
     MicroBuffers buffers;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include <gmock/gmock.h>
@@ -103,6 +104,28 @@ TEST_F(ClDeviceTest, BuffersGoThereAndBackUnchanged) {
     ASSERT_TRUE(copy_to_cl(*there, 1 << 20, *opencl, between, "words"));
     ASSERT_TRUE(copy_to_gl(between, 1 << 20, *device, back, "words"));
     EXPECT_EQ(back.download_all<uint32_t>(words.size()), words);
+}
+
+TEST_F(ClDeviceTest, KeepsWhatIsLentAsLongAsTheBufferIsInUse) {
+    const auto data = std::make_shared<const std::vector<uint32_t>>(std::vector<uint32_t>{1, 2, 3, 4, 5});
+    const std::weak_ptr<const void> kept = data;
+    const auto bytes = std::as_bytes(std::span(*data));
+    const uint64_t before = device->memory_used();
+    {
+        ClBuffer lent;
+        const auto sent = opencl->lend(lent, bytes, data, "numbers");
+        ASSERT_TRUE(sent) << sent.error().line();
+        EXPECT_EQ(kept.use_count(), opencl->info().is_gpu ? 1 : 2);
+        EXPECT_EQ(device->memory_used(), before + bytes.size());
+        std::vector<uint32_t> back(data->size());
+        ASSERT_TRUE(lent.download(0, std::as_writable_bytes(std::span(back))));
+        EXPECT_EQ(back, *data);
+        ClBuffer moved = std::move(lent);
+        EXPECT_EQ(kept.use_count(), opencl->info().is_gpu ? 1 : 2);
+        EXPECT_FALSE(opencl->lend(moved, {}, data, "nothing"));
+    }
+    EXPECT_EQ(kept.use_count(), 1);
+    EXPECT_EQ(device->memory_used(), before);
 }
 
 TEST_F(ClDeviceTest, ErrorsOfKernelsNameFileAndLine) {
