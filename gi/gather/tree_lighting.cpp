@@ -16,6 +16,13 @@ namespace {
 
 constexpr size_t kSlotsATask = 65536;
 
+/// Returns the view whose rays pass through the middles of its pixels: frames of an average have this in
+/// common.
+CameraView middle_view(CameraView view) {
+    view.right.w = view.up.w = 0;
+    return view;
+}
+
 }  // namespace
 
 void TreeLighting::update(const Changes& changes) {
@@ -33,6 +40,7 @@ Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
         sky_ = gather_sky(frame.environment);
         bright_ = SkyDirections(sky_.bright);
         LUCARNE_TRY(gatherer_.set_sky(*opencl_, sky_));
+        LUCARNE_TRY(drop_openings());
         sky_of_ = scene_.environment;
     }
     return upload_materials(frame.gl.device, frame.materials, materials_);
@@ -41,7 +49,6 @@ Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
 void TreeLighting::begin(Frame& frame) {
     views_ = light_views(frame, bright_, frame.index);
     light_gbuffers_.begin(frame.gl.device, views_, views_.size());
-    openings_ = {};
 }
 
 Result<void> TreeLighting::make_tree(Frame& frame) {
@@ -51,8 +58,7 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
     light_of_.reset();
     photons_.reset();
     bright_light_ = {};
-    LUCARNE_TRY(gatherer_.set_openings(*opencl_, nullptr));
-    openings_ = {};
+    LUCARNE_TRY(drop_openings());
     traced_.reset();
     LUCARNE_TRY(gatherer_.set_tree(*opencl_, nullptr));  // the old one needs no memory beside the new one
     LUCARNE_TRY(lit_.set_surfels(frame));
@@ -138,9 +144,19 @@ Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<con
 Result<const SkyOpenings*> TreeLighting::find_openings(Frame& frame, std::span<const GatherPoint> pilots,
                                                        uint64_t seed) {
     LUCARNE_TRY(trace_tree(frame));
-    LUCARNE_TRY(gatherer_.set_openings(*opencl_, nullptr));
+    const CameraView view = middle_view(frame.camera);
+    if (openings_of_ == view) return &openings_;
+    LUCARNE_TRY(drop_openings());
     openings_ = SkyOpenings::find(*traced_->tracer, sky_, pilots, seed, frame.stop);
+    if (!frame.stopped()) openings_of_ = view;
     return &openings_;
+}
+
+Result<void> TreeLighting::drop_openings() {
+    openings_of_.reset();
+    LUCARNE_TRY(gatherer_.set_openings(*opencl_, nullptr));
+    openings_ = {};
+    return {};
 }
 
 Result<void> TreeLighting::trace_tree(Frame& frame) {

@@ -44,7 +44,8 @@ class TreeLighting {
     Result<const BrightLight*> find_bright(Frame& frame, std::span<const GatherPoint> pilots, float typical,
                                            uint64_t seed);
     /// Finds the openings to the sky that some points see (SkyOpenings::find()), for the gatherer; empty if
-    /// there are none. Errors: Embree's.
+    /// there are none. All frames of a view have those of the first: the mean of its light does not depend
+    /// on them. Errors: Embree's.
     Result<const SkyOpenings*> find_openings(Frame& frame, std::span<const GatherPoint> pilots,
                                              uint64_t seed);
     /// Gives the gatherer other light: the surfels' own (if `own`), and what slots reflect of this
@@ -77,6 +78,7 @@ class TreeLighting {
                           std::vector<SideLight>& light);
     /// Makes the tree and traced_. Errors: Embree's, a device failed.
     Result<void> trace_tree(Frame& frame);
+    Result<void> drop_openings();
     /// Gives the gatherer this light.
     Result<void> set_slots(std::span<const SideLight> slots, const SideLobes& lobes);
 
@@ -96,8 +98,9 @@ class TreeLighting {
     std::optional<TracedTree> traced_;  ///< of the tree, once something asks for it
     std::optional<Photons> photons_;    ///< likewise
     BrightLight bright_light_;          ///< for the last picture
-    SkyOpenings openings_;              ///< likewise
-    std::optional<uint64_t> tree_of_;   ///< revision of the light cut that the tree is made from
+    SkyOpenings openings_;              ///< for the frames of openings_of_
+    std::optional<CameraView> openings_of_;
+    std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()
     SideLobes lobes_;               ///< by slot, that belong to it

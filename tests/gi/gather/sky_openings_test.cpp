@@ -14,11 +14,14 @@
 #include "gi/engines/environment/options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/gather/gather_options.h"
+#include "gi/registry.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/luminance.h"
 #include "gi/tracing/scatter.h"
 #include "io/core/random.h"
 #include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/lit_scene.h"
+#include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "tests/gi/on_device.h"
 
@@ -197,6 +200,43 @@ TEST_F(SkyOpeningsInEngines, WindowLightsARoomWithLittleNoiseInOneFrame) {
         const auto metrics = compare_images(one, other);
         ASSERT_TRUE(metrics);
         EXPECT_LT(metrics->rel_mse / 2, 0.05) << engine;
+    }
+}
+
+// All frames of a view have its first frame's openings; no other view and no other sky has them.
+TEST_F(SkyOpeningsInEngines, OpeningsServeOneViewUnderOneSky) {
+    const SurfelCloud cloud(room_with_a_window());
+    const auto loaded = load_cloud(*device, cloud);
+    ASSERT_TRUE(loaded) << loaded.error().line();
+    LitOptions options;
+    options.settings.set(kOnlyBounce, 0);
+    options.settings.set(kMicroBuffer, 8);
+    options.settings.set(kGatherEvery, 1);
+    options.settings.set(environment::kCacheSpacing, 3);
+    options.bounds = {glm::vec3(0.0f), glm::vec3(4.0f)};
+    const auto dim = scenes::even_sky(1), bright = scenes::even_sky(3);
+    const CameraView view = look({0.4f, 0.4f, 2.2f}, {2.8f, 1.6f, 0}, 24, 24);
+    const CameraView other = look({0.4f, 3.4f, 2.2f}, {2.8f, 1.6f, 2}, 24, 24);
+    const auto draw = [&](Engine& engine, const CameraView& camera, const auto& sky) {
+        options.environment = sky;
+        const auto lit =
+            draw_frame(*device, engine, (*loaded)->pool, (*loaded)->cut, camera, *options.bounds, options);
+        EXPECT_TRUE(lit) << lit.error().line();
+        return lit ? lit->radiance : std::vector<glm::vec4>{};
+    };
+    for (const std::string_view name : {"micro", "environment"}) {
+        const auto engine = *make_engine(name), fresh = *make_engine(name);
+        draw(*engine, other, dim);
+        EXPECT_EQ(draw(*engine, view, dim), draw(*fresh, view, dim)) << name << " after another view";
+        const auto right = draw(*make_engine(name).value(), view, bright);
+        EXPECT_EQ(draw(*engine, view, bright), right) << name << " under another sky";
+        // The next frame of an average looks for the sky through the same openings: its mean is the same.
+        CameraView shifted = view;
+        shifted.right.w = shifted.up.w = 0.3f;
+        options.index = 1;
+        const auto next = draw(*engine, shifted, bright), alone = draw(*fresh, shifted, bright);
+        options.index = 0;
+        EXPECT_NEAR(mean_luminance(next) / mean_luminance(alone), 1, 0.1) << name;
     }
 }
 
