@@ -92,8 +92,14 @@ BrightLight BrightLight::find(const LitTree& scene, const TracedTree& traced,
 }
 
 glm::vec3 BrightLight::at(const GatherPoint& point, uint64_t number) const {
-    const size_t stride = std::max<size_t>(vpls_.size() / kVplsOfAPoint, 1);
     glm::vec3 sum(0.0f);
+    each(point, number, [&](const glm::vec3&, const glm::vec3& light) { sum += light; });
+    return sum;
+}
+
+void BrightLight::each(const GatherPoint& point, uint64_t number,
+                       const std::function<void(const glm::vec3&, const glm::vec3&)>& visit) const {
+    const size_t stride = std::max<size_t>(vpls_.size() / kVplsOfAPoint, 1);
     glm::vec3 start(0.0f);
     bool started = false;
     for (size_t i = number % stride; i < vpls_.size(); i += stride) {
@@ -101,9 +107,10 @@ glm::vec3 BrightLight::at(const GatherPoint& point, uint64_t number) const {
         if (!(mean_colour(irradiance) > 0)) continue;
         if (!started) start = ray_start(*traced_->tracer, point);
         started = true;
-        if (!traced_->tracer->occluded(start, vpls_[i].origin)) sum += irradiance;
+        if (!traced_->tracer->occluded(start, vpls_[i].origin))
+            visit(glm::normalize(vpls_[i].position - point.position),
+                  irradiance * (static_cast<float>(stride) / kPi));
     }
-    return sum * (static_cast<float>(stride) / kPi);
 }
 
 }  // namespace lucarne::gi

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,8 +39,13 @@ class BrightLight {
     /// Returns the mean radiance, as Gatherer::gather() has it, that the VPLs bring to a point. `number`
     /// chooses some of them.
     glm::vec3 at(const GatherPoint& point, uint64_t number) const;
+    /// Calls visit(direction, light) for those of these VPLs that the point sees. `light`: their parts of
+    /// at().
+    void each(const GatherPoint& point, uint64_t number,
+              const std::function<void(const glm::vec3&, const glm::vec3&)>& visit) const;
 
     static constexpr float kBright = 8;
+    static constexpr size_t kPilots = 128;  ///< that tell what is bright for a picture
 
  private:
     const TracedTree* traced_ = nullptr;

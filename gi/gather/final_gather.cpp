@@ -19,8 +19,6 @@ namespace lucarne::gi {
 namespace {
 
 constexpr size_t kPixelsATask = 4096, kPointsATask = 256;
-/// Pixels that tell what is bright for a picture.
-constexpr size_t kPilots = 128;
 /// Share of the time that buffers take if bright light comes by rays.
 constexpr double kBuffersShare = 0.8;
 /// Micro-buffers of specular lobes end where the lobe has fallen to this share of its peak; the rest is a
@@ -59,8 +57,9 @@ class LobeGather {
         gatherer_.set_no_bright();
         LUCARNE_TRY(gatherer_.set_openings(device_, nullptr));
         if (rare.find_bright) {
-            LUCARNE_ASSIGN(bright_,
-                           timed(frame_, "bright light", [&] { return bright_for(rare.find_bright); }));
+            LUCARNE_ASSIGN(bright_, timed(frame_, "bright light", [&] {
+                               return rare.find_bright(pilots(BrightLight::kPilots), seed_);
+                           }));
         }
         if (rare.find_openings) {
             LUCARNE_ASSIGN(const SkyOpenings* openings, timed(frame_, "openings to the sky", [&] {
@@ -125,20 +124,6 @@ class LobeGather {
         }
         return points;
     }
-    /// Finds what is bright for the picture, of which a few pixels gather first.
-    Result<const BrightLight*> bright_for(const FindBright& find) {
-        const std::vector<GatherPoint> points = pilots(kPilots);
-        std::vector<glm::vec4> found(points.size());
-        if (points.empty()) return nullptr;
-        LUCARNE_TRY(gatherer_.gather(device_, what_, points, frame_.settings[kMicroBuffer], seed_, found,
-                                     frame_.stop));
-        if (frame_.stopped()) return nullptr;
-        float typical = 0;
-        for (const glm::vec4& light : found) typical += mean_colour(glm::vec3(light)) / kPilots;
-        if (!(typical > 0)) return nullptr;
-        return find(points, typical, seed_);
-    }
-
     /// Gathers at those of these pixels that have a surface; results in their order.
     Result<void> gather_at(std::span<const uint32_t> pixels, std::vector<glm::vec4>& results, bool again) {
         std::vector<GatherPoint> points;

@@ -18,10 +18,9 @@ struct GatherCounts {
     size_t again = 0;   ///< of these, for pixels between which nothing could be interpolated
 };
 
-/// Finds the light that is bright for some points (the first argument) that receive a mean radiance of the
-/// second, W/(sr m^2), and tells the gatherer to leave it out. The third is a seed. Returns none if there is
-/// none.
-using FindBright = std::function<Result<const BrightLight*>(std::span<const GatherPoint>, float, uint64_t)>;
+/// Finds the light that is bright for some points and tells the gatherer to leave it out. The second argument
+/// is a seed. Returns none if there is none.
+using FindBright = std::function<Result<const BrightLight*>(std::span<const GatherPoint>, uint64_t)>;
 /// Finds the openings to the sky that some points see. The second argument is a seed.
 using FindOpenings = std::function<Result<const SkyOpenings*>(std::span<const GatherPoint>, uint64_t)>;
 

@@ -259,10 +259,10 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
 // irradiance environment maps"): they turn max(c, 0), c the cosine between normal and ray, into 3/32 + c/2 + 15/32 c^2.
 // Arguments as above; `first`: the number of the first point, of its results and of what it sees.
 kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
-                  global const float* lobe_directions, uint glossy, global const float* sky_texels, SkyPicture sky,
-                  global const float4* openings, uint open, global const float* densities,
-                  global const GatherPoint* points, global const float* rays, uint sets, uint first, uint count,
-                  global const uint* seen, global float* results) {
+                  global const float* lobe_directions, uint glossy, global const float* bright, float reach2,
+                  global const float* sky_texels, SkyPicture sky, global const float4* openings, uint open,
+                  global const float* densities, global const GatherPoint* points, global const float* rays,
+                  uint sets, uint first, uint count, global const uint* seen, global float* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
     densities += number * open;
@@ -283,6 +283,9 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
             float3 radiance = (float3)(0.0f);
             if (code != kSeesSky) {
                 if (lit) radiance = vload3(code, light);
+                if (lit && reach2 >= 0.0f)
+                    radiance = without_bright(radiance, bright, reach2, code,
+                                              length(slot_middle(nodes, code / 2) - place.position));
                 if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d);
             } else if (sky.width > 0) {
                 radiance = sky_radiance(sky_texels, sky, d);

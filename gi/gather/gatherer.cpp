@@ -254,9 +254,10 @@ Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered wh
         if (open > 0) LUCARNE_TRY(send_densities(device, points.subspan(first, count), buffers.grid_));
         LUCARNE_TRY(kernel->run(
             ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit, glossy ? lobe_light_ : nodes_,
-            glossy ? lobe_directions_ : nodes_, glossy, sky.width > 0 ? sky_texels_ : nodes_, sky,
-            open > 0 ? spheres_ : nodes_, open, open > 0 ? densities_of_ : nodes_, buffers.points_, rays_,
-            kSets, static_cast<uint32_t>(first), static_cast<uint32_t>(count), buffers.seen_, results_));
+            glossy ? lobe_directions_ : nodes_, glossy, reach2_ >= 0 ? bright_ : nodes_, reach2_,
+            sky.width > 0 ? sky_texels_ : nodes_, sky, open > 0 ? spheres_ : nodes_, open,
+            open > 0 ? densities_of_ : nodes_, buffers.points_, rays_, kSets, static_cast<uint32_t>(first),
+            static_cast<uint32_t>(count), buffers.seen_, results_));
         if (open == 0) continue;
         each_sky_ray(points.subspan(first, count),
                      [&](size_t i, const glm::vec3& direction, const glm::vec3& light) {

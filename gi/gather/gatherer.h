@@ -30,6 +30,8 @@ enum class Gathered : uint8_t { light_of_surfels, sky, both };
 class MicroBuffers {
  public:
     size_t count() const { return count_; }
+    /// Whose buffers these are.
+    std::span<const GatherPoint> points() const { return held_; }
     /// Returns what the pixels of all buffers see (gather_point.h), in order of the points. Errors: the
     /// device failed.
     Result<std::vector<uint32_t>> seen() const;
@@ -56,9 +58,9 @@ class Gatherer {
     /// Sends specular light to the device, which the slots send out beside that of set_light() until it is
     /// replaced. Errors: device memory.
     Result<void> set_lobes(ClDevice& device, const SideLobes& lobes);
-    /// Leaves light out of what gather() finds (BrightLight), until set_no_bright() or other light or another
-    /// tree comes: of each slot that much, W/(sr m^2), as far as it is far beyond the root of `reach2`, m^2.
-    /// Errors: device memory.
+    /// Leaves light out of what gather() and shade() find (BrightLight), until set_no_bright() or other light
+    /// or another tree comes: of each slot that much, W/(sr m^2), as far as it is far beyond the root of
+    /// `reach2`, m^2. Errors: device memory.
     Result<void> set_bright(ClDevice& device, std::span<const SideLight> slots, float reach2);
     void set_no_bright() { reach2_ = kNoReach; }
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.

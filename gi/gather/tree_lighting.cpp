@@ -9,6 +9,7 @@
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/light_options.h"
+#include "gi/shared/lobe.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi {
@@ -132,9 +133,20 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
 }
 
 Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<const GatherPoint> pilots,
-                                                     float typical, uint64_t seed) {
+                                                     Gathered what, uint64_t seed) {
     LUCARNE_TRY(trace_tree(frame));
-    bright_light_ = BrightLight::find(lit_, *traced_, slots_, pilots, typical, seed, frame.stop);
+    gatherer_.set_no_bright();
+    std::vector<glm::vec4> found(pilots.size());
+    if (pilots.empty()) return nullptr;
+    LUCARNE_TRY(
+        gatherer_.gather(*opencl_, what, pilots, frame.settings[kMicroBuffer], seed, found, frame.stop));
+    if (frame.stopped()) return nullptr;
+    float typical = 0;
+    for (const glm::vec4& light : found)
+        typical += mean_colour(glm::vec3(light)) / static_cast<float>(pilots.size());
+    if (!(typical > 0)) return nullptr;
+    const std::vector<SideLight>& slots = replaced_ ? own_slots_ : slots_;
+    bright_light_ = BrightLight::find(lit_, *traced_, slots, pilots, typical, seed, frame.stop);
     if (bright_light_.empty()) return nullptr;
     LUCARNE_TRY(gatherer_.set_bright(*opencl_, bright_light_.excess(), bright_light_.reach2()));
     bright_light_.drop_excess();

@@ -39,9 +39,11 @@ class TreeLighting {
     /// may differ from frame to frame), and gives it to the gatherer. Errors: a device failed.
     Result<void> make_light(Frame& frame, const Radiosity::Settings& settings,
                             LightPoints points = LightPoints::radiosity);
-    /// Finds the light that is bright for some points (BrightLight::find()) and has the gatherer leave it
-    /// out. make_light() has to come first. Returns none if there is none. Errors: Embree's, a device failed.
-    Result<const BrightLight*> find_bright(Frame& frame, std::span<const GatherPoint> pilots, float typical,
+    /// Finds the light that is bright for some points, which gather `what` first, and has the gatherer leave
+    /// it out (BrightLight::find()): of what surfels send out by make_light(), or after set_irradiance(), in
+    /// which it has to be, of their own light. Returns none if there is none. Errors: Embree's, a device
+    /// failed.
+    Result<const BrightLight*> find_bright(Frame& frame, std::span<const GatherPoint> pilots, Gathered what,
                                            uint64_t seed);
     /// Finds the openings to the sky that some points see (SkyOpenings::find()), for the gatherer; empty if
     /// there are none. All frames of a view have those of the first: the mean of its light does not depend

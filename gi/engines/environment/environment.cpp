@@ -21,6 +21,7 @@
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
 #include "gi/shared/brdf.h"
+#include "io/core/parallel.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
@@ -39,6 +40,7 @@ constexpr EngineInfo kInfo{
     .needs = {.light_cut = true, .light_views = true, .opencl = true},
     .reports_progress = true};
 
+constexpr size_t kPointsATask = 256;
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 340 MB
 /// Places between which light is exchanged are this much farther apart than caches.
@@ -74,6 +76,8 @@ class EnvironmentEngine final : public Engine {
                                                  Gathered what);
     Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
     Result<std::vector<LightByNormal>> shade(const Frame& frame, Gathered what, const MicroBuffers& buffers);
+    Result<void> find_openings(Frame& frame, std::span<const SurfacePoint> surfaces);
+    Result<void> find_bright(Frame& frame, std::span<const SurfacePoint> surfaces);
     Result<std::vector<Cache>> gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
                                          std::span<const uint32_t> pixels, float spacing, Gathered what,
                                          std::span<glm::vec4> light);
@@ -93,6 +97,7 @@ class EnvironmentEngine final : public Engine {
     bool lit_ = false;  ///< the light that surfels send out is there: the last frame was finished
     GatherCounts lobes_;
     const SkyOpenings* openings_ = nullptr;  ///< of the frame; none: buffers find all of the sky
+    const BrightLight* bright_ = nullptr;    ///< likewise, of what surfels send out
     std::vector<LightByNormal> sky_;         ///< what primary points receive of it in the frame
     uint64_t seed_ = 0;
     size_t primaries_ = 0, gathering_ = 0, repaired_ = 0, reported_ = 0;
@@ -219,15 +224,56 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
     return irradiances;
 }
 
-/// Lights the micro-buffers of points that pixels show. They cast rays of their own at openings to the sky.
-/// Those of secondary points would take as long as their buffers and gain nothing (FLIP of a loft by day
-/// .1617, .1612 without).
+/// Returns so many points that pixels show, from all over the picture.
+std::vector<GatherPoint> pilots_of(std::span<const SurfacePoint> surfaces, size_t count, uint64_t seed) {
+    const std::vector<uint32_t> pixels = pixels_of(surfaces);
+    std::vector<GatherPoint> pilots;
+    const size_t all = std::min(count, pixels.size());
+    for (size_t i = 0; i < all; ++i) {
+        const SurfacePoint& at = surfaces[pixels[i * pixels.size() / all]];
+        pilots.push_back(point_at(at.position, at.normal, at.radius, mix64(seed, i)));
+        pilots.back().viewer = at.viewer;
+    }
+    return pilots;
+}
+
+Result<void> EnvironmentEngine::find_openings(Frame& frame, std::span<const SurfacePoint> surfaces) {
+    // The sky's light reaches pixels at once, or by one reflection.
+    if (!lighting_.has_sky() || frame.moving || frame.settings[kOnlyBounce] > 1) return {};
+    const TimedPass pass(frame, "openings to the sky");
+    const auto pilots = pilots_of(surfaces, SkyOpenings::kPilots, seed_ + 3);
+    LUCARNE_ASSIGN(openings_, lighting_.find_openings(frame, pilots, seed_));
+    return {};
+}
+
+/// Finds what is bright of the surfels' own light, if pixels show it reflected.
+Result<void> EnvironmentEngine::find_bright(Frame& frame, std::span<const SurfacePoint> surfaces) {
+    const EngineSettings& s = frame.settings;
+    if (!wants_indirect(s) || s[kOnlyBounce] > 1 || frame.moving) return {};
+    const TimedPass pass(frame, "bright light");
+    const auto pilots = pilots_of(surfaces, BrightLight::kPilots, seed_ + 4);
+    LUCARNE_ASSIGN(bright_, lighting_.find_bright(frame, pilots, shown(s, lighting_.has_sky()), seed_));
+    return {};
+}
+
+/// Lights the micro-buffers of points that pixels show. They cast rays of their own at openings to the sky
+/// and at what is bright. Those of secondary points would take as long as their buffers and gain nothing
+/// (openings, FLIP of a loft by day: .1617, .1612 without).
 Result<std::vector<LightByNormal>> EnvironmentEngine::shade(const Frame& frame, Gathered what,
                                                             const MicroBuffers& buffers) {
     Gatherer& gatherer = lighting_.gatherer();
     LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, SkyOpenings::kRays));
     LUCARNE_ASSIGN(auto light, gatherer.shade(lighting_.opencl(), what, buffers, frame.stop));
     LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), nullptr));
+    if (!bright_ || what == Gathered::sky) return light;
+    const std::span<const GatherPoint> points = buffers.points();
+    parallel_ranges(points.size(), kPointsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last && !frame.stopped(); ++i)
+            bright_->each(points[i], points[i].seed,
+                          [&](const glm::vec3& direction, const glm::vec3& arriving) {
+                              light[i].add(light_from(direction, points[i].normal, arriving), 1);
+                          });
+    });
     return light;
 }
 
@@ -241,8 +287,7 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
     }
     std::vector<LightByNormal> light(buffers_.count());
     if (what != Gathered::sky) {
-        LUCARNE_ASSIGN(light,
-                       lighting_.gatherer().shade(lighting_.opencl(), Gathered::light_of_surfels, buffers_));
+        LUCARNE_ASSIGN(light, shade(frame, Gathered::light_of_surfels, buffers_));
     }
     if (what != Gathered::light_of_surfels)
         for (size_t i = 0; i < light.size(); ++i) light[i].add(sky_[i], 1);
@@ -336,21 +381,11 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     }
     if (frame.stopped()) return {};
     report(frame, 0.4);
-    // The sky's light reaches pixels at once, or by one reflection.
-    if (lighting_.has_sky() && !frame.moving && s[kOnlyBounce] <= 1) {
-        const TimedPass pass(frame, "openings to the sky");
-        const std::vector<uint32_t> pixels = pixels_of(surfaces);
-        std::vector<GatherPoint> pilots;
-        for (size_t i = 0; i < std::min(SkyOpenings::kPilots, pixels.size()); ++i) {
-            const SurfacePoint& at =
-                surfaces[pixels[i * pixels.size() / std::min(SkyOpenings::kPilots, pixels.size())]];
-            pilots.push_back(point_at(at.position, at.normal, at.radius, mix64(seed_ + 3, i)));
-            pilots.back().viewer = at.viewer;
-        }
-        LUCARNE_ASSIGN(openings_, lighting_.find_openings(frame, pilots, seed_));
-    }
+    LUCARNE_TRY(find_openings(frame, surfaces));
     if (frame.stopped()) return {};
     if (wants_indirect(s)) LUCARNE_TRY(light_secondaries(frame, primaries));
+    if (frame.stopped()) return {};
+    LUCARNE_TRY(find_bright(frame, surfaces));
     if (frame.stopped()) return {};
     report(frame, 0.8);
     const Gathered what = shown(s, lighting_.has_sky());
@@ -409,6 +444,8 @@ Result<void> EnvironmentEngine::follow(Frame& frame) {
 Result<void> EnvironmentEngine::render(Frame& frame) {
     lighting_.begin(frame);
     openings_ = nullptr;
+    bright_ = nullptr;
+    lighting_.gatherer().set_no_bright();
     sky_.clear();
     frame.gl.radiance.clear(0);
     seed_ = mix64(frame.settings[kSeed], frame.index);

@@ -69,8 +69,8 @@ Result<void> MicroEngine::gather(Frame& frame) {
                                                                    : Gathered::light_of_surfels;
     RareLight rare;
     if (wants_indirect(s))
-        rare.find_bright = [this, &frame](std::span<const GatherPoint> pilots, float typical, uint64_t seed) {
-            return lighting_.find_bright(frame, pilots, typical, seed);
+        rare.find_bright = [this, &frame, what](std::span<const GatherPoint> pilots, uint64_t seed) {
+            return lighting_.find_bright(frame, pilots, what, seed);
         };
     if (what != Gathered::light_of_surfels)
         rare.find_openings = [this, &frame](std::span<const GatherPoint> pilots, uint64_t seed) {

@@ -148,32 +148,6 @@ TEST_F(MicroEngineTest, LightIsReflectedByLobesBetweenSurfaces) {
         }
 }
 
-// A micro-buffer finds such a lamp with a sixth of a ray, so that without rays of its own most pixels were
-// black.
-TEST_F(MicroEngineTest, SmallBrightSurfacesLightThePictureSmoothly) {
-    AnalyticScene scene;
-    scene.materials = {material(1, 0, 1, 0), material(1, 0, 1, 1000)};
-    scenes::add_rectangle(scene.surfels, glm::vec3(-1, -1, 0), 2.0f * kX, 2.0f * kY, 160, glm::vec3(0.5f));
-    constexpr float kSide = 0.06f;
-    scenes::add_rectangle(scene.surfels, glm::vec3(-kSide / 2, -kSide / 2, 3), kSide * kY, kSide * kX, 12,
-                          glm::vec3(0.5f), 1);
-    scene.camera = look(glm::vec3(0.3f, 0.2f, 1), glm::vec3(0.3f, 0.25f, 0), 0.4f, 48);
-    scene.settings.set(kOnlyBounce, 1);
-    scene.settings.set(kMicroBuffer, 24);
-    scene.settings.set(kGatherEvery, 1);
-    scene.settings.set(reference::kSamples, 64);
-    const std::vector<glm::vec4> found = render(scene).radiance, truth = render(scene, "reference").radiance;
-    ASSERT_EQ(found.size(), truth.size());
-    double squares = 0;
-    for (size_t i = 0; i < truth.size(); ++i) {
-        ASSERT_GT(truth[i].x, 0);
-        const double error = found[i].x / truth[i].x - 1;
-        squares += error * error;
-    }
-    EXPECT_NEAR(mean_luminance(found) / mean_luminance(truth), 0.986, 0.02);
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(truth.size())), 0.25);
-}
-
 TEST_F(MicroEngineTest, FewerGatheringPixelsGiveTheSameLight) {
     AnalyticScene scene = room(material(1, 0, 1, 0));
     const auto all = render(scene);
