@@ -23,9 +23,7 @@ constexpr float kTouchingBlocks = 1.25f * kBlocksAlong * kTouching;
 
 constexpr int kAlong = 3 * kBlocksAlong;
 constexpr int kMiddle = 13;  ///< of the voxels
-/// Blocks of 3 x 3 x 3 voxels: three words for each layer along z, of four rows along x each. A row is the
-/// lower 12 of 16 bits.
-using Rows = std::array<uint64_t, 3 * kAlong>;
+using Rows = BlockRows;
 constexpr uint64_t kRowBits = 0x0fff0fff0fff0fff;
 
 /// Sets the bits of a mask's voxel in rows.
@@ -236,6 +234,22 @@ bool connects_all(const std::array<uint64_t, 27>& blocks) {
     for (size_t i = 0; i < wanted.size(); ++i)
         if ((wanted[i] & ~reached[i]) != 0) return false;
     return true;
+}
+
+BlockRows connected_with(const std::array<uint64_t, 27>& blocks, int voxel) {
+    Rows free{}, reached{};
+    for (int i = 0; i < 27; ++i) put(free, ~blocks[static_cast<size_t>(i)], i);
+    put(reached, ~blocks[static_cast<size_t>(voxel)], voxel);
+    while (grow(reached, free)) {
+    }
+    return reached;
+}
+
+bool holds(const BlockRows& rows, const glm::ivec3& block) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (block[axis] < 0 || block[axis] >= kAlong) return false;
+    const int row = block.y % kBlocksAlong;
+    return (rows[static_cast<size_t>(3 * block.z + block.y / kBlocksAlong)] >> (16 * row + block.x) & 1) != 0;
 }
 
 }  // namespace lucarne::gi::volume

@@ -48,4 +48,14 @@ uint64_t free_columns(uint64_t blocks, int axis);
 /// fastest.
 bool connects_all(const std::array<uint64_t, 27>& blocks);
 
+/// Blocks of 3 x 3 x 3 voxels: three words for each layer along z, of four rows along x each. A row is the
+/// lower 12 of 16 bits.
+using BlockRows = std::array<uint64_t, 3 * 3 * kBlocksAlong>;
+
+/// Returns the free blocks of 3 x 3 x 3 voxels that are connected with those of one of them, also by an edge
+/// or a corner. `blocks`: of the voxels, x fastest; `voxel`: a free one, of 0 to 26.
+BlockRows connected_with(const std::array<uint64_t, 27>& blocks, int voxel);
+/// Returns whether a block, counted from the lowest one of the 3 x 3 x 3 voxels, is one of them.
+bool holds(const BlockRows& rows, const glm::ivec3& block);
+
 }  // namespace lucarne::gi::volume

@@ -10,6 +10,7 @@
 
 #include "gi/shared/surfel_code.h"
 #include "gi/tree/coverage.h"
+#include "gi/volume/blocks.h"
 
 namespace lucarne::gi::volume {
 namespace {
@@ -26,16 +27,22 @@ constexpr float kHiding = 0.25f;
 constexpr float kThinnest = 0.1f, kThickest = 0.4f;
 /// At a face to which no surfel belongs, those within 80 degrees of it are seen.
 constexpr float kSteepest = 0.17f;
+/// The air before a surfel's side is looked for so many blocks above it, out of those that its disc touches.
+constexpr float kAbove = 1.5f;
+/// A slanted surface in a voxel is up to so many times as large as a side of the voxel.
+constexpr float kMostSlanted = 2;
 
 /// A part of a surfel's side that a face may show.
 struct Candidate {
     uint32_t surfel;
     bool back;
     bool beside;  ///< see Owned
-    float area;
+    float whole;  ///< area of the part, m^2
     float radius;
     glm::vec3 position, normal;  ///< the normal is that of the side
+    float area = whole;          ///< what of it is seen, m^2
     float height = 0;            ///< along the mean normal, m
+    bool open = false;           ///< that its light reaches the air before the face is known
 };
 
 /// A voxel whose surfels a face stands for. Of one beside it, in which a wall stands, only the areas count:
@@ -163,12 +170,58 @@ class Finder {
         if (!(sum > 0)) return;
         face.normal = mean_normal(outward);
         face.position = position / all;
-        if (own) face.area = all;
-        for (const Candidate& c : candidates_)
-            if (c.area > 0 && !c.beside) shown.push_back({c.surfel, c.back ? 1u : 0u, c.area / sum});
+        if (!own) {
+            for (const Candidate& c : candidates_)
+                if (c.area > 0) shown.push_back({c.surfel, c.back ? 1u : 0u, c.area / sum, c.area / sum});
+            return;
+        }
+        find_open(face);
+        const float beside = all - sum;
+        sum = show_below(sum, glm::dot(face.normal, outward));
+        face.area = sum + beside;
+        // What may be behind a wall is taken to be as bright as the rest.
+        float unknown = 0;
+        for (const Candidate& c : candidates_) unknown += c.beside && !c.open ? c.area : 0;
+        for (const Candidate& c : candidates_) {
+            const float weight = c.beside ? 0 : c.area / sum;
+            const float from = c.beside ? (c.open ? c.area : 0) : c.open ? c.whole : c.area;
+            const float sent = (from + weight * unknown) / face.area;
+            if (sent > 0) shown.push_back({c.surfel, c.back ? 1u : 0u, weight, sent});
+        }
     }
 
  private:
+    /// Finds those candidates that lie below others or beside the face, but not behind a wall: free blocks
+    /// lead from them to the air before the face.
+    void find_open(const Face& face) {
+        const auto asked = [](const Candidate& c) { return c.beside || c.area < c.whole; };
+        if (std::ranges::none_of(candidates_, asked)) return;
+        const glm::ivec3 step = step_of(face.side);
+        const BlockRows reached =
+            connected_with(voxels_.blocks_about(face.voxel), 13 + step.x + 3 * step.y + 9 * step.z);
+        const Grid& grid = voxels_.grid();
+        const glm::vec3 low(grid.cell(voxels_.occupied()[face.voxel]) - 1);
+        constexpr auto kBlocks = static_cast<float>(kBlocksAlong);
+        for (Candidate& c : candidates_)
+            if (asked(c))
+                c.open = holds(reached, glm::ivec3(glm::floor(kBlocks * (grid.place(c.position) - low) +
+                                                              kAbove * c.normal)));
+    }
+
+    /// Shows what is seen of open sheets below the outermost one: as much as it leaves free of the voxel.
+    /// `shown`: area so far, m^2; `cosine`: of the surface to the side. Returns the area then.
+    float show_below(float shown, float cosine) {
+        float below = 0;
+        for (const Candidate& c : candidates_) below += c.open && !c.beside ? c.whole - c.area : 0;
+        const float voxel = voxels_.grid().voxel;
+        const float room = voxel * voxel * std::min(1 / std::max(cosine, 1e-3f), kMostSlanted) - shown;
+        if (!(below > 0) || !(room > 0)) return shown;
+        const float share = std::min(room / below, 1.0f);
+        for (Candidate& c : candidates_)
+            if (c.open && !c.beside) c.area += share * (c.whole - c.area);
+        return shown + share * below;
+    }
+
     /// Collects the sides of surfels that belong to this side of voxels.
     void collect(std::span<const Owned> owned, int side) {
         candidates_.clear();

@@ -20,14 +20,16 @@ struct Face {
     int side = 0;
     glm::vec3 position{0.0f};  ///< middle of the surface, m
     glm::vec3 normal{0.0f};    ///< unit mean, into the air
-    /// Of the surface, m^2; 0: the surface counts at another face of the voxel, or there is none.
+    /// Of the surface that is seen, m^2; 0: the surface counts at another face of the voxel, or there is
+    /// none.
     float area = 0;
 };
 
 /// All faces of the occupied voxels that border on air. A face shows those sides of surfels whose normals are
 /// nearest to its own: a side of a surfel belongs to one face, so the two sides of a thin wall stay apart.
 /// Where discs touch several layers of voxels, a face also shows what lies below it, and beside it where a
-/// wall stands on the next voxel. Of several sheets above each other it shows the outermost.
+/// wall stands on the next voxel. Of several sheets above each other it shows the outermost, and sends out
+/// the light of those below it, too, that are not shut off from its air.
 class Faces {
  public:
     static constexpr uint32_t kNone = 0xffffffffu;
@@ -45,6 +47,8 @@ class Faces {
         uint32_t surfel : 31;
         uint32_t back : 1;  ///< the side that its normal does not point to
         float weight;
+        /// The area from which light of the surfel's own leaves by this face, over the area of the face.
+        float sent;
     };
     /// The parts that a face shows; their weights add up to 1. Rims of sheets, where no surfel faces the air,
     /// show none.
@@ -54,16 +58,27 @@ class Faces {
     /// Returns for each face the mean of value(surfel, back) over what it shows; `Value` begins as zero.
     template <class Value, class Function>
     std::vector<Value> means(const Function& value) const {
-        std::vector<Value> found(faces_.size(), Value(0.0f));
-        parallel_over_faces([&](uint32_t face) {
-            for (const Shown& part : shown(face))
-                found[face] += part.weight * value(part.surfel, part.back != 0);
-        });
-        return found;
+        return sums<Value>(&Shown::weight, value);
+    }
+    /// Returns the radiance of each face at which it sends out, over its area, all that its surfels do:
+    /// radiance(surfel, back) is that of a side of a surfel by lights or emission. Sides that no light
+    /// reaches lie below others, and do not darken what is seen.
+    template <class Value, class Function>
+    std::vector<Value> radiance_of(const Function& radiance) const {
+        return sums<Value>(&Shown::sent, radiance);
     }
 
  private:
     friend class FaceMaker;
+    template <class Value, class Function>
+    std::vector<Value> sums(float Shown::*weight, const Function& value) const {
+        std::vector<Value> found(faces_.size(), Value(0.0f));
+        parallel_over_faces([&](uint32_t face) {
+            for (const Shown& part : shown(face))
+                found[face] += part.*weight * value(part.surfel, part.back != 0);
+        });
+        return found;
+    }
     void number(const Voxels& voxels);
     template <class Body>
     void parallel_over_faces(const Body& body) const {

@@ -197,7 +197,7 @@ Result<StepResult> LightMaker::light_faces(Work& work) {
     for (Level& level : levels_) {
         if (level.own_of != surfels_lit_) {
             const Faces& faces = level.space->faces;
-            level.own = faces.means<glm::vec3>(
+            level.own = faces.radiance_of<glm::vec3>(
                 [&](uint32_t surfel, bool back) { return back ? own[surfel].back : own[surfel].front; });
             level.reflectances =
                 faces.means<glm::vec3>([&](uint32_t surfel, bool) { return reflectances[surfel]; });

@@ -334,6 +334,55 @@ TEST(Faces, OfAThinWallShowTheSheetOnTheirSide) {
     }
 }
 
+/// Returns what faces above some height send out, m^2, if those upper sides of a floor at z = 0 have radiance
+/// 1 for which lit(position) is true. `lit_area`: of these.
+template <class Lit>
+double sent_above(const std::vector<Surfel>& surfels, float height, const Lit& lit, double& lit_area) {
+    const auto flat = flat::of(surfels);
+    const Faces faces = Faces::find(divided(flat, grid_about(flat, kVoxels)), flat);
+    const auto radiance = faces.radiance_of<float>([&](uint32_t s, bool back) {
+        return !back && surfels[s].position.z == 0 && lit(surfels[s].position) ? 1.0f : 0.0f;
+    });
+    double sent = 0;
+    for (uint32_t i = 0; i < faces.all().size(); ++i)
+        if (faces.all()[i].position.z > height) sent += radiance[i] * faces.all()[i].area;
+    lit_area = 0;
+    for (const Surfel& s : surfels) lit_area += s.position.z == 0 && lit(s.position) ? s.area : 0;
+    return sent;
+}
+
+TEST(Faces, SendOutTheLightOfWhatLiesBelowGratings) {
+    // Bars half a voxel above the floor hide a third of it: what is lit between them sends its light out.
+    const float voxel = 1.0f / 29;
+    std::vector<Surfel> surfels, bars;
+    scenes::add_rectangle(surfels, kO, kX, kY, 120, glm::vec3(.5f));
+    scenes::add_rectangle(bars, .5f * voxel * kZ, kX, kY, 240, glm::vec3(.5f));
+    for (const Surfel& bar : bars)
+        if (std::fmod(bar.position.x, 3 * voxel) < voxel) surfels.push_back(bar);
+    const auto between = [&](const glm::vec3& at) {
+        const float place = std::fmod(at.x, 3 * voxel);
+        return place > 1.2f * voxel && place < 2.8f * voxel;
+    };
+    double lit = 0;
+    const double sent = sent_above(surfels, -1, between, lit);
+    EXPECT_NEAR(sent / lit, 1, .05);
+}
+
+TEST(Faces, SendOutNothingOfWhatLiesBelowASheet) {
+    // In the same voxel as the sheet, and in the next ones below it.
+    for (const float gap : {.6f, .9f, 1.2f, 1.6f}) {
+        std::vector<Surfel> surfels;
+        scenes::add_rectangle(surfels, kO, kX, kY, 120, glm::vec3(.5f));
+        scenes::add_rectangle(surfels, gap / 29 * kZ, kX, kY, 120, glm::vec3(.5f));
+        const auto inner = [](const glm::vec3& at) {
+            return std::max(std::abs(at.x - .5f), std::abs(at.y - .5f)) < .35f;
+        };
+        double lit = 0;
+        EXPECT_EQ(sent_above(surfels, .5f * gap / 29, inner, lit), 0) << gap;
+        EXPECT_GT(lit, .4);
+    }
+}
+
 TEST(Faces, OfASealedRoomShowNothingThatIsLitFromOutside) {
     const auto surfels = flat::noisy_room(20000);
     const Voxels voxels = divided(surfels, grid_about(surfels, kVoxels));
