@@ -1,7 +1,6 @@
 #include "gi/volume/air.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -12,8 +11,6 @@
 
 namespace lucarne::gi::volume {
 namespace {
-
-constexpr size_t kOccupiedATask = 256;
 
 /// For a row of cells, `stride` apart: the largest of the distance along the row to a cell and of that cell's
 /// own distance, at the cell where it is least. Repeated over all axes this is the distance of
@@ -35,30 +32,12 @@ void spread(std::vector<uint8_t>& distances, size_t first, size_t stride, int co
     }
 }
 
-/// Returns Air::passing() of a voxel.
-glm::vec3 passing_of(const Voxels& voxels, uint32_t voxel) {
-    const uint64_t own = voxels.blocks(voxel);
-    glm::vec3 shares;
-    for (int axis = 0; axis < 3; ++axis)
-        shares[axis] = static_cast<float>(std::popcount(free_columns(own, axis))) / 64;
-    if (shares == glm::vec3(0.0f)) return shares;
-    return connects_all(voxels.blocks_about(voxel)) ? shares : glm::vec3(0.0f);
-}
-
 }  // namespace
 
-Air::Air(const Voxels& voxels)
+Air::Air(const Voxels& voxels, std::span<const FlatSurfel> surfels)
     : grid_(voxels.grid()),
       numbers_(voxels.numbers().begin(), voxels.numbers().end()),
-      blocks_(voxels.occupied().size()),
-      passing_(voxels.occupied().size()) {
-    parallel_ranges(blocks_.size(), kOccupiedATask, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
-            const auto voxel = static_cast<uint32_t>(i);
-            blocks_[i] = voxels.blocks(voxel);
-            passing_[i] = passing_of(voxels, voxel);
-        }
-    });
+      openings_(find_openings(voxels, surfels)) {
     const auto numbers = voxels.numbers();
     distances_.resize(numbers.size());
     std::ranges::transform(numbers, distances_.begin(),
@@ -78,7 +57,7 @@ Air::Air(const Voxels& voxels)
 
 /// Returns whether no block of an occupied voxel is on a line between two places on its sides, or in it.
 bool Air::sees_in(const glm::ivec3& cell, const glm::vec3& from, const glm::vec3& to) const {
-    const uint64_t blocks = blocks_[numbers_[grid_.number(cell)]];
+    const uint64_t blocks = openings_.blocks[numbers_[grid_.number(cell)]];
     if (blocks == kAllBlocks) return false;
     constexpr auto kAlong = static_cast<float>(kBlocksAlong);
     const glm::vec3 start = kAlong * (from - glm::vec3(cell)), way = kAlong * (to - from);

@@ -216,33 +216,65 @@ uint64_t free_columns(uint64_t blocks, int axis) {
     return free | free << stride | free << (2 * stride) | free << (3 * stride);
 }
 
-bool connects_all(const std::array<uint64_t, 27>& blocks) {
-    const auto columns = [&](int voxel) {
-        const uint64_t own = blocks[static_cast<size_t>(voxel)];
-        return free_columns(own, 0) | free_columns(own, 1) | free_columns(own, 2);
-    };
-    const uint64_t own = columns(kMiddle);
-    if (own == 0) return false;
-    Rows free{}, wanted{}, reached{};
-    for (int voxel = 0; voxel < 27; ++voxel) {
-        put(free, ~blocks[static_cast<size_t>(voxel)], voxel);
-        put(wanted, columns(voxel), voxel);
-    }
-    put(reached, own & (~own + 1), kMiddle);  // its lowest block
+namespace {
+
+Rows free_rows(const std::array<uint64_t, 27>& blocks) {
+    Rows free{};
+    for (int i = 0; i < 27; ++i) put(free, ~blocks[static_cast<size_t>(i)], i);
+    return free;
+}
+
+/// Returns the free blocks that are connected with those of a mask's voxel.
+Rows grown(const Rows& free, uint64_t mask, int voxel) {
+    Rows reached{};
+    put(reached, mask, voxel);
     while (grow(reached, free)) {
     }
-    for (size_t i = 0; i < wanted.size(); ++i)
-        if ((wanted[i] & ~reached[i]) != 0) return false;
+    return reached;
+}
+
+}  // namespace
+
+AirAbout air_about(const std::array<uint64_t, 27>& blocks, uint32_t air) {
+    const Rows free = free_rows(blocks);
+    const auto first = std::ranges::find_if(blocks, [](uint64_t b) { return b != kAllBlocks; });
+    if (first == blocks.end()) return {};
+    const int seed = air != 0 ? std::countr_zero(air) : static_cast<int>(first - blocks.begin());
+    const Rows reached = grown(free, ~blocks[static_cast<size_t>(seed)], seed);
+    Rows apart{}, wanted = free;
+    if (air != 0) {
+        wanted = {};
+        for (int i = 0; i < 27; ++i)
+            if ((air >> i & 1) != 0) put(wanted, kAllBlocks, i);
+    }
+    AirAbout found{.one = true, .reached = middle_of(reached)};
+    for (size_t i = 0; i < free.size(); ++i) {
+        apart[i] = free[i] & ~reached[i];
+        found.one = found.one && (wanted[i] & ~reached[i]) == 0;
+    }
+    Rows touching{};
+    for (int z = kBlocksAlong; z < 2 * kBlocksAlong; ++z) {
+        uint64_t touched[3];
+        touched_in_layer(apart, z, touched);
+        for (int i = 0; i < 3; ++i) touching[static_cast<size_t>(3 * z + i)] = touched[i];
+    }
+    found.apart = middle_of(touching);
+    return found;
+}
+
+bool connects(const std::array<uint64_t, 27>& blocks, const std::array<uint64_t, 27>& wanted) {
+    const uint64_t own = wanted[kMiddle];
+    if (own == 0) return false;
+    const Rows reached = grown(free_rows(blocks), own & (~own + 1), kMiddle);  // from its lowest block
+    Rows all{};
+    for (int i = 0; i < 27; ++i) put(all, wanted[static_cast<size_t>(i)], i);
+    for (size_t i = 0; i < all.size(); ++i)
+        if ((all[i] & ~reached[i]) != 0) return false;
     return true;
 }
 
 BlockRows connected_with(const std::array<uint64_t, 27>& blocks, int voxel) {
-    Rows free{}, reached{};
-    for (int i = 0; i < 27; ++i) put(free, ~blocks[static_cast<size_t>(i)], i);
-    put(reached, ~blocks[static_cast<size_t>(voxel)], voxel);
-    while (grow(reached, free)) {
-    }
-    return reached;
+    return grown(free_rows(blocks), ~blocks[static_cast<size_t>(voxel)], voxel);
 }
 
 bool holds(const BlockRows& rows, const glm::ivec3& block) {

@@ -43,10 +43,19 @@ uint64_t without_gaps(const std::array<uint64_t, 27>& blocks, int gap);
 /// Returns the blocks on those columns along an axis that are free from side to side.
 uint64_t free_columns(uint64_t blocks, int axis);
 
-/// Returns whether what is free in the middle one of 3 x 3 x 3 voxels, from side to side, is connected with
-/// all that is free from side to side in the others: then no wall is between them. `blocks`: of the voxels, x
-/// fastest.
-bool connects_all(const std::array<uint64_t, 27>& blocks);
+/// The blocks of a voxel and what is free about it.
+struct AirAbout {
+    bool one = false;      ///< all air about the voxel is connected through free blocks
+    uint64_t reached = 0;  ///< free blocks of the voxel that are connected with it
+    uint64_t apart = 0;    ///< its blocks that are, or touch, free blocks about it which are not
+};
+/// Looks at the middle one of 3 x 3 x 3 voxels. `blocks`: of the voxels, x fastest; `air`: bits of those that
+/// are air. Without any, all free blocks must be connected.
+AirAbout air_about(const std::array<uint64_t, 27>& blocks, uint32_t air);
+
+/// Returns whether some free blocks of 3 x 3 x 3 voxels are all connected with those of the middle one, of
+/// which there are some. `wanted`: by voxel.
+bool connects(const std::array<uint64_t, 27>& blocks, const std::array<uint64_t, 27>& wanted);
 
 /// Blocks of 3 x 3 x 3 voxels: three words for each layer along z, of four rows along x each. A row is the
 /// lower 12 of 16 bits.

@@ -168,7 +168,7 @@ Result<StepResult> LightMaker::find_faces(Work& work, size_t number) {
     if (level.face_maker->advance()) return StepResult::again;
     level.space->faces = level.face_maker->finish();
     level.face_maker.reset();
-    level.space->air = Air(level.space->voxels);
+    level.space->air = Air(level.space->voxels, surfels_.surfels());
     level.first_bounce.emplace(*level.space);
     level.made = true;
     return StepResult::done;

@@ -13,6 +13,7 @@
 #include "gi/volume/blocks.h"
 #include "gi/volume/disc_areas.h"
 #include "gi/volume/faces.h"
+#include "gi/volume/openings.h"
 #include "gi/volume/voxels.h"
 #include "io/core/random.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -220,22 +221,55 @@ TEST(Blocks, WithoutGapsAWallWithAStepInAGapIsClosed) {
             EXPECT_EQ((closed & block_bit({x, 0, z})) != 0, z == 1 || z == 2) << x << ' ' << z;
 }
 
-TEST(Blocks, AWallSeparatesWhatIsFreeUnlessItHasAnOpening) {
+TEST(Blocks, AWallSeparatesTheAirOnItsSidesUnlessItHasAnOpening) {
     std::array<uint64_t, 27> blocks{};
-    EXPECT_TRUE(connects_all(blocks));
     for (int i = 9; i < 18; ++i) blocks[i] = 0xffffu << 16;  // a wall across the middle layer of voxels
-    EXPECT_FALSE(connects_all(blocks));
+    constexpr uint32_t kAir = 0777000777;                    // the layers below and above it
+    EXPECT_FALSE(air_about(blocks, kAir).one);
     blocks[9] &= ~(uint64_t{1} << 16);  // a hole of one block in a corner
-    EXPECT_TRUE(connects_all(blocks));
-    blocks[13] = kAllBlocks;
-    EXPECT_FALSE(connects_all(blocks)) << "nothing is free in the middle";
+    const AirAbout open = air_about(blocks, kAir);
+    EXPECT_TRUE(open.one);
+    EXPECT_EQ(open.reached, ~blocks[13]);
+    EXPECT_EQ(open.apart, 0u);
+}
+
+TEST(Blocks, HollowsOfAWallAreApartFromTheAirAtAnOpening) {
+    // A wall of two sheets, blocks 4 and 7 along z, that ends in the middle of the middle voxel.
+    const auto wall = [](bool closed_end) {
+        return blocks_where([&](const glm::ivec3& b) {
+            return b.x < 6 && (b.z == 4 || b.z == 7 || (closed_end && b.x == 5 && b.z > 4 && b.z < 7));
+        });
+    };
+    constexpr uint32_t kAir = 0777000777;
+    const AirAbout closed = air_about(wall(true), kAir), open = air_about(wall(false), kAir);
+    EXPECT_TRUE(closed.one);
+    EXPECT_TRUE(open.one);
+    for (int x = 0; x < kBlocksAlong; ++x) {
+        EXPECT_EQ((closed.reached & block_bit({x, 1, 1})) != 0, x > 1) << x;
+        EXPECT_EQ((closed.apart & block_bit({x, 1, 1})) != 0, x < 2) << x;
+        EXPECT_NE(open.reached & block_bit({x, 1, 1}), 0u) << x;
+    }
+    EXPECT_EQ(open.apart, 0u);
+}
+
+TEST(Blocks, OpeningsAreConnectedUnlessAWallIsBetweenThem) {
+    std::array<uint64_t, 27> blocks{}, wanted{};
+    wanted[13] = wanted[4] = wanted[22] = kAllBlocks;
+    EXPECT_TRUE(connects(blocks, wanted));
+    for (int i = 9; i < 18; ++i) blocks[i] = 0xffffu << 16;
+    wanted[13] = 0xffff;
+    EXPECT_FALSE(connects(blocks, wanted));
+    wanted[22] = 0;
+    EXPECT_TRUE(connects(blocks, wanted));
+    wanted[13] = 0;
+    EXPECT_FALSE(connects(blocks, wanted)) << "nothing is wanted in the middle";
 }
 
 TEST(Air, VoxelsOfAClosedWallLetNothingPassAndThoseAtAnOpeningTheirShare) {
     std::vector<FlatSurfel> wall = flat::square(120, 1);
     const Grid grid = grid_about(wall, 16);
     const Voxels closed = divided(wall, grid);
-    const Air nothing(closed);
+    const Air nothing(closed, wall);
     // At the rim of the square there is no wall beside it.
     const auto inner = [](const glm::ivec3& cell) {
         return cell.x > 3 && cell.y > 3 && cell.x < 12 && cell.y < 12;
@@ -246,7 +280,7 @@ TEST(Air, VoxelsOfAClosedWallLetNothingPassAndThoseAtAnOpeningTheirShare) {
         }
     std::erase_if(wall, [](const FlatSurfel& s) { return std::abs(s.x - .5f) < .04f; });
     const Voxels open = divided(wall, grid);
-    const Air air(open);
+    const Air air(open, wall);
     const glm::ivec3 beside(grid.place({.49f, .5f, 0}));
     ASSERT_FALSE(open.is_air(beside));
     const glm::vec3 passing = air.passing(open.at(beside));
@@ -257,7 +291,7 @@ TEST(Air, VoxelsOfAClosedWallLetNothingPassAndThoseAtAnOpeningTheirShare) {
 TEST(Air, SeesNothingThroughASealedRoom) {
     const auto surfels = flat::noisy_room(20000);
     const Voxels voxels = divided(surfels, grid_about(surfels, kVoxels));
-    const Air air(voxels);
+    const Air air(voxels, surfels);
     const auto inside = flood(voxels, voxels.grid().size / 2);
     Random random(4);
     std::vector<glm::vec3> in, out;
@@ -276,10 +310,34 @@ TEST(Air, SeesNothingThroughASealedRoom) {
     }
 }
 
+TEST(Air, SeesAsMuchThroughAGratingAsItsBarsLeaveOpen) {
+    // Bars of .4 voxels, 1.37 voxels apart, in a window of a wall.
+    const float voxel = 1.0f / 16, width = .4f * voxel, pitch = 1.37f * voxel;
+    auto surfels = flat::square(400, 1);
+    const float whole = width + 2 * surfels.front().radius;  // discs stick out
+    const auto inner = [](float x) { return x > .2f && x < .8f; };
+    std::erase_if(surfels, [&](const FlatSurfel& s) {
+        return inner(s.x) && inner(s.y) && std::fmod(s.x, pitch) > width;
+    });
+    const Voxels voxels = divided(surfels, Grid{glm::vec3(-.5f), voxel, glm::ivec3(32)});
+    const Air air(voxels, surfels);
+    Random random(6);
+    size_t seen = 0;
+    constexpr size_t kLines = 4000;
+    for (size_t i = 0; i < kLines; ++i) {
+        const glm::vec3 at(.3 + .4 * random.uniform(), .3 + .4 * random.uniform(), 0);
+        const glm::vec3 way(random.uniform() - .5, random.uniform() - .5, 1);
+        seen += air.sees(voxels.grid().place(at - .4f * way), voxels.grid().place(at + .4f * way)) ? 1 : 0;
+    }
+    // Slanted lines meet more of bars that are a block thick.
+    EXPECT_NEAR(static_cast<double>(seen) / kLines, 1 - whole / pitch, .07);
+}
+
 TEST(Air, SkipsFreeVoxelsAndMissesNoOccupiedBlock) {
     const auto surfels = sheet(glm::normalize(glm::vec3(1, 2, .4f)), 1, 60);
     const Voxels voxels = divided(surfels, Grid{glm::vec3(0), 1.0f / 16, glm::ivec3(32)});
-    const Air air(voxels);
+    const Air air(voxels, surfels);
+    const Openings openings = find_openings(voxels, surfels);
     Random random(5);
     size_t blocked = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -292,7 +350,7 @@ TEST(Air, SkipsFreeVoxelsAndMissesNoOccupiedBlock) {
             const glm::vec3 at = glm::mix(from, to, static_cast<float>(k) / 4000);
             const uint32_t voxel = voxels.at(glm::ivec3(at));
             const glm::ivec3 block(glm::fract(at) * float{kBlocksAlong});
-            free &= voxel == Voxels::kAir || (voxels.blocks(voxel) & block_bit(block)) == 0;
+            free &= voxel == Voxels::kAir || (openings.blocks[voxel] & block_bit(block)) == 0;
         }
         // Fine steps may miss a corner that the line cuts, never the other way round.
         EXPECT_TRUE(free || !air.sees(from, to));

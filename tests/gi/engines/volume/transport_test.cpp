@@ -173,6 +173,22 @@ TEST(VolumeTransport, NothingEntersASealedRoomOfDiscsLikeThoseOfScans) {
     }
 }
 
+TEST(VolumeTransport, NothingEntersASealedRoomBesideOpenings) {
+    // Bars and posts before its walls: the voxels between them and the walls are openings.
+    auto room = flat::noisy_room(20000);
+    for (const float away : {.02f, .05f, .09f}) {
+        std::vector<Surfel> bars;
+        for (const float x : {.1f, .3f, .45f, .8f}) {
+            const glm::vec3 along(x, 0, 1 + away), across(0, x, 1 + away), side(1 + away, x, 0);
+            scenes::add_rectangle(bars, along, .04f * kX, kY, 40, glm::vec3(.5f));
+            scenes::add_rectangle(bars, across, kX, .03f * kY, 40, glm::vec3(.5f));
+            scenes::add_rectangle(bars, side, .02f * kY, kZ, 40, glm::vec3(.5f));
+        }
+        for (const Surfel& bar : bars) room.push_back(flat::of(bar));
+    }
+    expect_sealed(room, {12u, 16u, 19u, 22u, 27u});
+}
+
 TEST(VolumeTransport, OpeningsOfAVoxelLetTheirShareOfLightThrough) {
     // A floor, a plate with a slit of one voxel that lies in two, and a ceiling.
     std::vector<Surfel> sheets;

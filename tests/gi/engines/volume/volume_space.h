@@ -20,7 +20,7 @@ inline Space make_space(const std::vector<FlatSurfel>& surfels, const Grid& grid
     if (!voxels) return space;
     space.voxels = std::move(*voxels);
     space.faces = Faces::find(space.voxels, surfels);
-    space.air = Air(space.voxels);
+    space.air = Air(space.voxels, surfels);
     return space;
 }
 
