@@ -12,6 +12,8 @@
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "gi/engines/volume/first_bounce.h"
+#include "gi/host_frame.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
 #include "tests/gi/engines/analytic_frame.h"
@@ -50,11 +52,13 @@ inline std::filesystem::path shiny_scene(const BenchRun& run, int exponent) {
 }
 
 /// Measures the mean radiance of a unit square of albedo .5 lit by another square that emits radiance 1,
-/// divided by .5: the form factor between them (Howell's catalogue, C-11 and C-14); in one frame and the mean
-/// of four, with the errors that they should keep.
+/// divided by .5, over the mean form factor from what the pixels show to the square; in one frame and the
+/// mean of four, with the errors that they should keep. (Pixels show also the rims of discs beyond the
+/// square, and not all of a corner, so it is not quite that between the squares, of Howell's catalogue, C-11
+/// and C-14.)
 inline Result<void> form_factor(gi::Device& device, const BenchRun& run, const std::string& engine,
                                 const std::string& name, const glm::vec3& corner, const glm::vec3& u,
-                                const glm::vec3& v, double truth, double one, double four,
+                                const glm::vec3& v, double one, double four,
                                 const gi::EngineSettings& over = {}) {
     gi::scenes::AnalyticScene scene;
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), o(0.0f);
@@ -72,27 +76,28 @@ inline Result<void> form_factor(gi::Device& device, const BenchRun& run, const s
     for (int i = 0; i < kFrames; ++i) {
         LUCARNE_ASSIGN(const auto rendered,
                        gi::scenes::render(device, engine, scene, static_cast<uint64_t>(i)));
-        double mean = 0;
-        size_t pixels = 0;
+        const auto shown = gi::visible_surfaces(scene.camera, rendered.texels);
+        double mean = 0, truth = 0;
         for (size_t p = 0; p < rendered.texels.size(); ++p) {
             if (!(rendered.texels[p].depth > 0) || (rendered.texels[p].material & 0xffffu) != 0) continue;
             mean += rendered.radiance[p].y / .5;
-            ++pixels;
+            truth += gi::volume::form_factor(shown[p].position, glm::vec3(0, 0, 1), corner + .5f * (u + v),
+                                             glm::normalize(glm::cross(u, v)), 1);
         }
-        mean /= static_cast<double>(std::max<size_t>(pixels, 1));
-        if (i == 0) row("form factor, " + name + ", high", "mean", mean / truth - 1, one, true);
+        mean /= std::max(truth, 1e-9);
+        if (i == 0) row("form factor, " + name + ", high", "mean", mean - 1, one, true);
         sum += mean / kFrames;
     }
-    row("form factor, " + name + ", 4 frames", "mean", sum / truth - 1, four, true);
+    row("form factor, " + name + ", 4 frames", "mean", sum - 1, four, true);
     return {};
 }
 
 inline Result<void> form_factors(gi::Device& device, const BenchRun& run, const std::string& engine,
                                  double one, double four) {
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f);
-    LUCARNE_TRY(form_factor(device, run, engine, "parallel at 1", z, y, x, .199825, one, four));
-    LUCARNE_TRY(form_factor(device, run, engine, "parallel at .5", .5f * z, y, x, .415253, one, four));
-    return form_factor(device, run, engine, "at a right angle", o, y, z, .200044, one, four);
+    LUCARNE_TRY(form_factor(device, run, engine, "parallel at 1", z, y, x, one, four));
+    LUCARNE_TRY(form_factor(device, run, engine, "parallel at .5", .5f * z, y, x, one, four));
+    return form_factor(device, run, engine, "at a right angle", o, y, z, one, four);
 }
 
 /// Measures a closed box of albedo .5 whose walls emit .5: one frame and the mean of four, with the errors

@@ -115,6 +115,21 @@ TEST(VolumeTransport, PlatesSixteenVoxelsApartSeeEachOtherByTheirFormFactor) {
                 1, .02);
 }
 
+TEST(VolumeTransport, PlatesAtARightAngleSeeEachOtherByTheirFormFactor) {
+    // Much of this light goes from one voxel to the next.
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, kO, kX, kY, 100, glm::vec3(.5f));
+    scenes::add_rectangle(surfels, kO, kY, kZ, 100, glm::vec3(.5f));
+    for (const uint32_t voxels : {32u, 64u}) {
+        const Space space = make_space(flat::of(surfels), voxels);
+        const auto radiance = radiance_of(space, [](const Face& face) { return face.normal.x > .9f; });
+        const auto light = smoothed(space, gathered(space, radiance));
+        EXPECT_NEAR(mean_share(space, light, [](const Face& face) { return face.normal.z > .9f; }) / kBeside,
+                    1, .01)
+            << voxels;
+    }
+}
+
 TEST(VolumeTransport, EvenLightStaysEven) {
     const Space space = make_space(unit_cube());
     const auto all = radiance_of(space, [](const Face&) { return true; });
