@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "gi/gather/gather_options.h"
 #include "gi/gl_frame.h"
 #include "gi/lighting/light_options.h"
 #include "gi/post/share_edges.h"
@@ -294,12 +295,15 @@ Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& requ
     for (const auto& material : scene.materials)
         materials.push_back(gi::device_material(material, scene.albedo.scale));
     const bool keeps_light = &by == drawing.engine && drawing.keeps_light;
+    // An engine that stands in is there to be quick, also where nothing moves.
+    gi::EngineSettings by_settings = settings;
+    if (&by == stand_in.get()) by_settings.set(gi::kShadows, gi::Shadows::maps);
     gi::GlFrame on_device{device, surfels.pool(), cuts.of_frame(), gbuffer, target};
     gi::Frame frame{.camera = camera,
                     .lights = lights,
                     .materials = materials,
                     .background = glm::vec3(scene.background),
-                    .settings = settings,
+                    .settings = by_settings,
                     .index = presentation.accumulated(),
                     .environment = scene.environment,
                     .bounds = {local.to_local(header.min), local.to_local(header.max)},

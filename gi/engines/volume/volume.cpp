@@ -12,11 +12,14 @@
 #include "gi/engines/volume/light_maker.h"
 #include "gi/engines/volume/options.h"
 #include "gi/engines/volume/read_back.h"
+#include "gi/gather/gather_options.h"
+#include "gi/gather/traced_lights.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
 #include "gi/lighting/light_options.h"
+#include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi {
 namespace volume {
@@ -28,8 +31,9 @@ bool overlap(const Bounds& a, const Bounds& b) {
 }
 
 constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,   &kOnlyBounce.info, &kVoxelCount.info,      &kVolumeLevels.info, &kSweepDirections.info,
-    &kTransport.info, &kIterations.info, &kLightResolution.info, &kLightSamples.info, &kSeed.info};
+    &kBounces.info,         &kOnlyBounce.info,   &kVoxelCount.info, &kVolumeLevels.info,
+    &kSweepDirections.info, &kTransport.info,    &kIterations.info, &kShadows.info,
+    &kLightResolution.info, &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "volume",
                            .label = "Light in a volume",
                            .description = "light carried through voxels: quick and even, without fine detail",
@@ -63,6 +67,8 @@ class VolumeEngine final : public Engine {
     std::optional<uint64_t> sky_of_;  ///< revision of the environment that both are made from
     std::vector<LightView> views_;    ///< of the lights and of what is bright in the sky
     LightGBuffers light_gbuffers_;
+    std::unique_ptr<tracing::SurfelTracer> tracer_;  ///< of the light cut, once shadows ask for it
+    uint64_t tracer_of_ = 0;
     LightMaker maker_;
     VolumeLight light_;
     SceneRevisions scene_;  ///< of the frame that is drawn
@@ -125,12 +131,22 @@ Result<void> VolumeEngine::show_light(Frame& frame) {
     return {};
 }
 
-/// Adds emission, background and the first reflection of the lights. `any_state`: shadows may be those of a
-/// moment ago.
+/// Adds emission, background and the first reflection of the lights. `any_state`: shadows by maps may be
+/// those of a moment ago.
 Result<void> VolumeEngine::add_direct(Frame& frame, bool any_state) {
-    const TimedPass pass(frame, "direct light");
     Device& device = frame.gl.device;
+    if (traces_shadows(frame) && (!tracer_ || tracer_of_ != cuts_.light)) {
+        const TimedPass pass(frame, "surfels for tracing");
+        tracer_.reset();
+        LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
+        tracer_of_ = cuts_.light;
+    }
+    const TimedPass pass(frame, "direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, background_, true));
+    if (traces_shadows(frame)) {
+        add_traced_light(frame, *tracer_, bright_);
+        return {};
+    }
     for (const LightView& view : views_) {
         LUCARNE_ASSIGN(const GBuffer* seen, any_state ? light_gbuffers_.look_at_any_state(device, view)
                                                       : light_gbuffers_.look(device, view));

@@ -49,7 +49,7 @@ TEST_F(TracedLightsTest, PixelsSeeSharpLightsAsInTheReference) {
     scene_.lights = {scenes::spot({0.6f, 0.4f, 2}, {1, 1, 0}, 0.7f, 0.6f, 50),
                      scenes::point({1.8f, 0.3f, 1}, 10)};
     scene_.materials = {scenes::material(0.6f, 0.4f, 20, 0.1f)};
-    for (const std::string_view engine : {"micro", "environment", "paths"})
+    for (const std::string_view engine : {"micro", "environment", "paths", "volume"})
         EXPECT_LT(error(engine), 1e-6) << engine;
 }
 
@@ -58,7 +58,7 @@ TEST_F(TracedLightsTest, LightsWithASizeAreSoftInOneFrame) {
     scene_.lights = {scenes::rectangle_light({1, 1, 2}, 0.4f * kX, 0.4f, -kZ, 20),
                      scenes::wide_sun({0.5f, 0.3f, -1}, 0.1f, 10)};
     scene_.settings.set(kLightSamples, 16);
-    for (const std::string_view engine : {"micro", "environment", "paths"})
+    for (const std::string_view engine : {"micro", "environment", "paths", "volume"})
         EXPECT_LT(error(engine), 0.002) << engine;
 }
 
@@ -72,13 +72,13 @@ TEST_F(TracedLightsTest, TheBrightPartOfASkyShinesInOneFrame) {
     scene_.environment = sky;
     scene_.settings.set(kLightSamples, 16);
     scene_.settings.set(kGatherEvery, 1);
-    for (const std::string_view engine : {"micro", "environment", "paths"})
+    for (const std::string_view engine : {"micro", "environment", "paths", "volume"})
         EXPECT_LT(error(engine), 0.01) << engine;
 }
 
 TEST_F(TracedLightsTest, PicturesInMotionHaveShadowsByMaps) {
     scene_.lights = {scenes::spot({0.6f, 0.4f, 2}, {1, 1, 0}, 0.7f, 0.6f, 50)};
-    for (const std::string_view engine : {"micro", "environment", "paths"}) {
+    for (const std::string_view engine : {"micro", "environment", "paths", "volume"}) {
         const auto by_rays = render(engine).radiance;
         scene_.moving = true;
         const auto in_motion = render(engine).radiance;

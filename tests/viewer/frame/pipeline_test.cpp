@@ -177,6 +177,8 @@ TEST_F(PipelineTest, TheStandInDrawsUntilSomethingIsComputedInAdvance) {
     FrameStats stats = frame("paths");
     while (stats.lit_by != "paths") {
         EXPECT_EQ(stats.lit_by, gi::stand_in_engine().name);
+        EXPECT_EQ(std::ranges::count(stats.passes, "surfels for tracing", &gi::PassTimes::Pass::name), 0)
+            << "its shadows are maps";
         stats = frame("paths");
     }
     EXPECT_TRUE(stats.prepared);

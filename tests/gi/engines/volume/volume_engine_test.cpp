@@ -5,6 +5,7 @@
 
 #include "gi/engines/volume/options.h"
 #include "gi/engines/volume/volume.h"
+#include "gi/gather/gather_options.h"
 #include "gi/shared/brdf.h"
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_scenes.h"
@@ -26,6 +27,7 @@ class VolumeEngineTest : public testing::Test {
         options.lights = {scenes::spot({1, 1, 1.8f}, {1, 1, 0}, .6f, .6f, 5)};
         options.settings.set(volume::kVoxelCount, 32);
         options.settings.set(kBounces, 3);
+        options.settings.set(kShadows, Shadows::maps);  // as in motion, which is compared with rest
         return options;
     }
     static CameraView camera() { return look({.3f, .4f, .5f}, {1.2f, 1.3f, .9f}, 32, 32); }
