@@ -240,7 +240,8 @@ AirAbout air_about(const std::array<uint64_t, 27>& blocks, uint32_t air) {
     const auto first = std::ranges::find_if(blocks, [](uint64_t b) { return b != kAllBlocks; });
     if (first == blocks.end()) return {};
     const int seed = air != 0 ? std::countr_zero(air) : static_cast<int>(first - blocks.begin());
-    const Rows reached = grown(free, ~blocks[static_cast<size_t>(seed)], seed);
+    const uint64_t own = ~blocks[static_cast<size_t>(seed)];
+    const Rows reached = grown(free, own & (~own + 1), seed);  // from one block: there may be a wall between
     Rows apart{}, wanted = free;
     if (air != 0) {
         wanted = {};

@@ -1,5 +1,6 @@
 #include "gi/volume/openings.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>

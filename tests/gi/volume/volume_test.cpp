@@ -252,6 +252,15 @@ TEST(Blocks, HollowsOfAWallAreApartFromTheAirAtAnOpening) {
     EXPECT_EQ(open.apart, 0u);
 }
 
+TEST(Blocks, WithoutAirAboutItAllThatIsFreeHasToBeConnected) {
+    // A wall divides each of the lowest voxels.
+    const auto wall = [](int end) {
+        return blocks_where([&](const glm::ivec3& b) { return b.z == 1 && b.x < end; });
+    };
+    EXPECT_FALSE(air_about(wall(12), 0).one);
+    EXPECT_TRUE(air_about(wall(11), 0).one);
+}
+
 TEST(Blocks, OpeningsAreConnectedUnlessAWallIsBetweenThem) {
     std::array<uint64_t, 27> blocks{}, wanted{};
     wanted[13] = wanted[4] = wanted[22] = kAllBlocks;
