@@ -34,6 +34,11 @@ Spacing spacing_of(const BakeInput& input, std::span<const Surfel> surfels) {
     return {least, std::max(least, most)};
 }
 
+/// Returns a part of the entry points; null if there is none with this number.
+const CutOffPart* find_part(const LightPaths& paths, size_t number) {
+    return number < paths.parts.size() ? &paths.parts[number] : nullptr;
+}
+
 /// Makes coarse paths first, which are usable after a moment, then those that were asked for.
 class PathsPrecomputation final : public Precomputation {
  public:
@@ -71,7 +76,7 @@ class PathsPrecomputation final : public Precomputation {
                              LUCARNE_TRY(publish(input, builder_->take()));
                              finished_ = true;
                              builder_.reset();
-                             tracer_.reset();
+                             surfaces_.reset();
                              return StepResult::done;
                          }});
         return steps;
@@ -106,9 +111,10 @@ class PathsPrecomputation final : public Precomputation {
         add("photon paths", &PathBuilder::make_photons);
     }
     Result<void> start(const BakeInput& input) {
-        LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(input.cut.surfels));
-        spacing_ = spacing_of(input, tracer_->surfels());
-        builder_.emplace(*tracer_,
+        LUCARNE_ASSIGN(auto tracer, tracing::SurfelTracer::create(input.cut.surfels));
+        surfaces_ = std::make_unique<Surfaces>(std::move(tracer));
+        spacing_ = spacing_of(input, surfaces_->tracer().surfels());
+        builder_.emplace(*surfaces_,
                          PathPlan{{kCoarserSpacing * spacing_.least, kCoarserSpacing * spacing_.most},
                                   kCoarseRays,
                                   kCoarseEntries,
@@ -117,8 +123,8 @@ class PathsPrecomputation final : public Precomputation {
     }
     void start_whole(const BakeInput& input) {
         is_whole_ = true;
-        builder_.emplace(*tracer_, PathPlan{spacing_, input.settings[kGatherRays],
-                                            input.settings[kEntryPoints], input.settings[kSeed]});
+        builder_.emplace(*surfaces_, PathPlan{spacing_, input.settings[kGatherRays],
+                                              input.settings[kEntryPoints], input.settings[kSeed]});
     }
     /// Makes the snapshot: reads what entry points reflect from the surfels, so that colours and materials
     /// may change without any ray.
@@ -128,10 +134,13 @@ class PathsPrecomputation final : public Precomputation {
             if (tracing::has_disc(input.cut.surfels[i])) discs.push_back(i);
         auto bake = std::make_shared<PathsBake>();
         for (const Side side : paths.entries.sides) {
-            if (side / 2 >= discs.size()) return rejected("paths", "an entry point is on no surfel");
-            const Surfel& s = input.cut.surfels[discs[side / 2]];
-            bake->entries.push_back(
-                {s.position, side % 2 ? -s.normal : s.normal, s.radius, s.albedo, s.material});
+            const CutOffPart* part =
+                side / 2 < discs.size() ? nullptr : find_part(paths, side / 2 - discs.size());
+            const Side of_disc = part ? part->side : side;
+            if (of_disc / 2 >= discs.size()) return rejected("paths", "an entry point is on no surfel");
+            const Surfel& s = input.cut.surfels[discs[of_disc / 2]];
+            bake->entries.push_back({part ? part->position : s.position, of_disc % 2 ? -s.normal : s.normal,
+                                     s.radius, s.albedo, s.material});
         }
         bake->near = PointCells(paths.points, kPixelReach);
         bake->near_blocks = native::point_blocks(paths.points, bake->near.numbers(), kPixelReach);
@@ -143,7 +152,7 @@ class PathsPrecomputation final : public Precomputation {
         return {};
     }
 
-    std::unique_ptr<tracing::SurfelTracer> tracer_;
+    std::unique_ptr<const Surfaces> surfaces_;
     Spacing spacing_;  ///< asked for
     std::optional<PathBuilder> builder_;
     bool is_whole_ = false, is_restored_ = false, finished_ = false;
@@ -157,7 +166,7 @@ constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info,
 
 const Precomputes kPathsPrecomputes{
     .make = []() -> std::unique_ptr<Precomputation> { return std::make_unique<PathsPrecomputation>(); },
-    .version = 4,
+    .version = 5,
     .options = kOfBake};
 
 }  // namespace lucarne::gi::paths

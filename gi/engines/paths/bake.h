@@ -23,6 +23,8 @@ struct LightPaths {
     std::vector<uint32_t> rays;  ///< of each point: the groups whose light they bring; kNone: none
     Groups groups;               ///< leaf_of is empty
     EntryPoints entries;
+    /// Entry points on parts of discs have the numbers of these, counted as surfels after the discs.
+    std::vector<CutOffPart> parts;
     Links links;
     /// Of each entry point: the leaves of the kVertices - 1 vertices of its photon path.
     std::vector<uint32_t> photons;

@@ -42,24 +42,24 @@ glm::dvec2 even_point(uint32_t i, uint64_t seed, uint64_t stream) {
     return glm::fract(shift + static_cast<double>(i) * kR2);
 }
 
-RayHit follow(const tracing::SurfelTracer& tracer, const RayStart& start, const glm::vec3& direction,
-              uint32_t count, float& distance) {
+RayHit follow(const Surfaces& surfaces, const RayStart& start, const glm::vec3& direction, uint32_t count,
+              float& distance) {
     const glm::vec3 origin = tracing::offset_origin(start.position, start.normal, start.radius);
-    const auto hit = tracer.first_hit(origin, direction);
+    const auto hit = surfaces.tracer().first_hit(origin, direction);
     distance = hit ? hit->distance : std::numeric_limits<float>::infinity();
     if (!hit) return {};
     const float cosine = std::max(glm::dot(direction, start.normal), kLeastCosine);
-    return {2 * hit->surfel + (hit->back ? 1u : 0u),
+    return {surfaces.side_of(*hit, origin + direction * hit->distance),
             distance * std::sqrt(kPi / (static_cast<float>(count) * cosine))};
 }
 
-float trace_rays(const tracing::SurfelTracer& tracer, const RayStart& start, uint64_t seed, uint64_t stream,
+float trace_rays(const Surfaces& surfaces, const RayStart& start, uint64_t seed, uint64_t stream,
                  std::span<RayHit> hits) {
     const auto count = static_cast<uint32_t>(hits.size());
     double nearness = 0;
     for (uint32_t i = 0; i < count; ++i) {
         float distance = 0;
-        hits[i] = follow(tracer, start, cosine_direction(start.normal, even_point(i, seed, stream)), count,
+        hits[i] = follow(surfaces, start, cosine_direction(start.normal, even_point(i, seed, stream)), count,
                          distance);
         nearness += 1 / std::max<double>(distance, 1e-6);
     }

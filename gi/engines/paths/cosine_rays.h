@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/engines/paths/sides.h"
-#include "gi/tracing/surfel_tracer.h"
+#include "gi/engines/paths/surfaces.h"
 
 namespace lucarne::gi::paths {
 
@@ -36,12 +36,12 @@ glm::dvec2 even_point(uint32_t i, uint64_t seed, uint64_t stream);
 /// solid angle of pi / (count cos); the width of its cross section is the root of that times the distance
 /// (Igehy 1999, "Tracing ray differentials", for rays from one point). Sets `distance`, m; infinite if it
 /// hits nothing.
-RayHit follow(const tracing::SurfelTracer& tracer, const RayStart& start, const glm::vec3& direction,
-              uint32_t count, float& distance);
+RayHit follow(const Surfaces& surfaces, const RayStart& start, const glm::vec3& direction, uint32_t count,
+              float& distance);
 
 /// Traces hits.size() even rays of a point and returns the harmonic mean of their lengths, m; rays that hit
 /// nothing count as infinitely long.
-float trace_rays(const tracing::SurfelTracer& tracer, const RayStart& start, uint64_t seed, uint64_t stream,
+float trace_rays(const Surfaces& surfaces, const RayStart& start, uint64_t seed, uint64_t stream,
                  std::span<RayHit> hits);
 
 }  // namespace lucarne::gi::paths

@@ -6,13 +6,16 @@
 #include "gi/gl_frame.h"
 #include "gi/lighting/surfel_light.h"
 #include "gi/shared/flat_surfel.h"
+#include "gi/shared/light.h"
 #include "gi/shared/surfel_code.h"
+#include "io/core/parallel.h"
 
 namespace lucarne::gi::paths {
 namespace {
 
 /// The light of more lamps is not kept apart: it takes 12 bytes for each entry point and lamp.
 constexpr size_t kMostKept = 8;
+constexpr size_t kEntriesATask = 1024;
 
 /// Returns how many of the first views belong to one light.
 size_t views_of_one(std::span<const LightView> views) {
@@ -65,8 +68,29 @@ Result<std::vector<glm::vec3>> EntryLight::compute(Frame& frame, std::span<const
     return irradiance;
 }
 
+/// Adds the light of a view's lamp by a ray from each entry point that faces it.
+void EntryLight::trace(Frame& frame, const LightView& view, const tracing::SurfelTracer& tracer,
+                       std::span<glm::vec3> irradiance) const {
+    const Light& light = view.light;
+    parallel_ranges(irradiance.size(), kEntriesATask, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end && !frame.stopped(); ++i) {
+            const Entry& entry = bake_->entries[i];
+            const glm::vec3 at = entry.position + frame.bake_offset;
+            glm::vec3 in;
+            const glm::vec3 arriving = light_irradiance(light, at, entry.normal, in);
+            if (arriving == glm::vec3(0.0f)) continue;
+            const glm::vec3 start = tracing::offset_origin(at, entry.normal, entry.radius);
+            const bool is_hidden = light.kind == kDirectionalLight
+                                       ? tracer.occluded_along(start, in)
+                                       : tracer.occluded(start, glm::vec3(light.position));
+            if (!is_hidden) irradiance[i] += arriving;
+        }
+    });
+}
+
 Result<std::vector<glm::vec3>> EntryLight::irradiance(Frame& frame, std::span<const LightView> views,
-                                                      LightGBuffers& gbuffers, bool any_state) {
+                                                      LightGBuffers& gbuffers, bool any_state,
+                                                      const tracing::SurfelTracer* tracer) {
     std::vector<glm::vec3> sum(bake_->entries.size(), glm::vec3(0.0f));
     std::vector<Kept> kept;
     size_t lights = 0;
@@ -77,15 +101,22 @@ Result<std::vector<glm::vec3>> EntryLight::irradiance(Frame& frame, std::span<co
         const auto own = views.first(keeps ? views_of_one(views) : views.size());
         const Light& light = own[0].light;
         const uint64_t cut = own[0].cut->fingerprint();
-        const auto found = std::ranges::find_if(
-            kept_, [&](const Kept& k) { return keeps && k.light == light && (any_state || k.cut == cut); });
+        const auto found = std::ranges::find_if(kept_, [&](const Kept& k) {
+            return keeps && k.light == light && (any_state || k.cut == cut) && (k.is_traced || !tracer);
+        });
         if (found != kept_.end()) {
             kept.push_back(*found);
         } else {
             ++computed_;
-            LUCARNE_ASSIGN(auto irradiance, compute(frame, own, gbuffers, any_state));
+            std::vector<glm::vec3> irradiance;
+            if (tracer) {
+                irradiance.assign(sum.size(), glm::vec3(0.0f));
+                for (const LightView& view : own) trace(frame, view, *tracer, irradiance);
+            } else {
+                LUCARNE_ASSIGN(irradiance, compute(frame, own, gbuffers, any_state));
+            }
             if (frame.stopped()) return sum;
-            kept.push_back({light, cut, std::move(irradiance)});
+            kept.push_back({light, cut, tracer != nullptr, std::move(irradiance)});
         }
         for (size_t i = 0; i < sum.size(); ++i) sum[i] += kept.back().irradiance[i];
         views = views.subspan(own.size());

@@ -11,20 +11,23 @@
 #include "gi/device/gl/device.h"
 #include "gi/engines/paths/bake.h"
 #include "gi/lighting/light_gbuffers.h"
+#include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi::paths {
 
-/// The light of lamps at entry points, by the lamps' shadow maps: E and V of Yue et al. 2007, eq. 8 and 9. Of
-/// few lamps each is computed by itself and kept, so a moved lamp repeats its own light only.
+/// The light of lamps at entry points, by the lamps' shadow maps or by rays: E and V of Yue et al. 2007, eq.
+/// 8 and 9. Of few lamps each is computed by itself and kept, so a moved lamp repeats its own light only.
 class EntryLight {
  public:
     /// Sends entry points to the device unless it has them. `bake`: the one whose entry points they are.
     /// Errors: device memory.
     Result<void> set_entries(Frame& frame, const std::shared_ptr<const PathsBake>& bake);
-    /// Returns the irradiance of each entry point by all these views of lights, W/m^2. `any_state`: shadow
-    /// maps of an earlier state of their cuts will do. Errors: device memory, a shader that fails.
+    /// Returns the irradiance of each entry point by all these views of lights, W/m^2: shadows by rays of
+    /// `tracer`, or by maps if it is null. `any_state`: shadow maps of an earlier state of their cuts will
+    /// do. Errors: device memory, a shader that fails.
     Result<std::vector<glm::vec3>> irradiance(Frame& frame, std::span<const LightView> views,
-                                              LightGBuffers& gbuffers, bool any_state);
+                                              LightGBuffers& gbuffers, bool any_state,
+                                              const tracing::SurfelTracer* tracer);
     /// How many lamps the last call computed; the others had not changed.
     size_t computed() const { return computed_; }
 
@@ -32,11 +35,15 @@ class EntryLight {
     /// What a lamp sends to the entry points.
     struct Kept {
         Light light;
-        uint64_t cut = 0;  ///< DeviceCut::fingerprint()
+        uint64_t cut = 0;        ///< DeviceCut::fingerprint()
+        bool is_traced = false;  ///< shadows by rays, not by maps
         std::vector<glm::vec3> irradiance;
     };
     Result<std::vector<glm::vec3>> compute(Frame& frame, std::span<const LightView> views,
                                            LightGBuffers& gbuffers, bool any_state);
+
+    void trace(Frame& frame, const LightView& view, const tracing::SurfelTracer& tracer,
+               std::span<glm::vec3> irradiance) const;
 
     std::shared_ptr<const PathsBake> bake_;  ///< whose entry points are on the device
     glm::vec3 offset_{0.0f};

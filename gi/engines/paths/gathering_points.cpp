@@ -29,10 +29,9 @@ constexpr size_t kTestsAPiece = 1024, kTracedAPiece = 8, kNormalsAPiece = 16384;
 
 }  // namespace
 
-PointChooser::PointChooser(const tracing::SurfelTracer& tracer, const Spacing& spacing, uint32_t rays,
-                           uint64_t seed)
-    : tracer_(tracer), rays_(rays), seed_(seed) {
-    std::vector<std::pair<uint64_t, Side>> keys(2 * tracer.surfels().size());
+PointChooser::PointChooser(const Surfaces& surfaces, const Spacing& spacing, uint32_t rays, uint64_t seed)
+    : surfaces_(surfaces), rays_(rays), seed_(seed) {
+    std::vector<std::pair<uint64_t, Side>> keys(2 * surfaces.discs());
     for (Side side = 0; side < keys.size(); ++side) keys[side] = {mix64(seed, side), side};
     std::ranges::sort(keys);
     for (const auto& [key, side] : keys) order_.push_back(side);
@@ -60,7 +59,7 @@ uint64_t PointChooser::cell_key(const glm::vec3& position, uint32_t facing) cons
 /// Finds the mean normals in cells of the least spacing: the noise of single normals would multiply the
 /// points. Surfels are in the order of their nodes here, so their cells stay in a cache; candidates are not.
 void PointChooser::find_normals() {
-    const auto& surfels = tracer_.surfels();
+    const std::vector<Surfel>& surfels = surfaces_.tracer().surfels();
     std::unordered_map<uint64_t, glm::vec3> sums;
     for (const Surfel& s : surfels)
         sums[cell_key(s.position, facing_of(s.normal))] += s.normal * std::max(s.area, 1e-12f);
@@ -92,9 +91,9 @@ bool PointChooser::is_covered(const glm::vec3& position, const glm::vec3& normal
 }
 
 bool PointChooser::is_narrow(Side side, const glm::vec3& normal) const {
-    const Surfel& s = tracer_.surfels()[side / 2];
+    const Surfel& s = surfaces_.surfels()[side / 2];
     std::array<RayHit, kRaysOfTest> hits;
-    return trace_rays(tracer_, {s.position, normal, s.radius}, seed_, side, hits) < kNarrow * s.radius;
+    return trace_rays(surfaces_, {s.position, normal, s.radius}, seed_, side, hits) < kNarrow * s.radius;
 }
 
 bool PointChooser::restore(State state) {
@@ -106,8 +105,11 @@ bool PointChooser::restore(State state) {
         if (p.side >= order_.size() || !(p.reach > 0) || !(p.reach <= state.spacing.most) ||
             !p.walls.are_finite())
             return false;
+    const auto is_side = [&](Side side) {
+        return side / 2 < surfaces_.surfels().size() && surfaces_.exists(side);
+    };
     for (const RayHit& hit : state.hits)
-        if ((hit.side >= order_.size() && hit.side != kNone) || !std::isfinite(hit.width)) return false;
+        if ((!is_side(hit.side) && hit.side != kNone) || !std::isfinite(hit.width)) return false;
     state_.spacing = state.spacing;
     start_over();
     state_ = std::move(state);
@@ -136,7 +138,7 @@ bool PointChooser::advance() {
             const Side side = order_[first + i];
             normals[i] = side % 2 ? -normals_[side / 2] : normals_[side / 2];
             covered[i] =
-                is_covered(tracer_.surfels()[side / 2].position, normals[i]) || is_narrow(side, normals[i]);
+                is_covered(surfaces_.surfels()[side / 2].position, normals[i]) || is_narrow(side, normals[i]);
         }
     });
     std::vector<size_t> passed;
@@ -149,13 +151,14 @@ bool PointChooser::advance() {
     parallel_ranges(passed.size(), kTracedAPiece, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const Side side = order_[first + passed[i]];
-            const Surfel& s = tracer_.surfels()[side / 2];
+            const Surfel& s = surfaces_.surfels()[side / 2];
             const RayStart start{s.position, normals[passed[i]], s.radius};
             const float length =
-                trace_rays(tracer_, start, seed_, side, std::span(hits).subspan(i * rays_, rays_));
+                trace_rays(surfaces_, start, seed_, side, std::span(hits).subspan(i * rays_, rays_));
             const float reach = std::clamp(length / 2, state_.spacing.least, state_.spacing.most);
-            points[i] = {s.position, start.normal, reach, side,
-                         find_walls(tracer_, start, kPixelReach * reach)};
+            points[i] = {s.position, start.normal,
+                         reach,      s.radius,
+                         side,       find_walls(surfaces_.tracer(), start, kPixelReach * reach)};
         }
     });
     for (size_t i = 0; i < passed.size(); ++i) {

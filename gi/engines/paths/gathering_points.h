@@ -12,8 +12,8 @@
 #include "gi/engines/paths/cosine_rays.h"
 #include "gi/engines/paths/point_grid.h"
 #include "gi/engines/paths/sides.h"
+#include "gi/engines/paths/surfaces.h"
 #include "gi/engines/paths/walls.h"
-#include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi::paths {
 
@@ -24,7 +24,8 @@ inline constexpr float kPixelReach = 1.6f, kFarReach = 8;
 /// A place at which light is gathered, for what lies within its reach.
 struct GatheringPoint {
     glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
-    float reach = 0;  ///< m: how far its light is valid along the surface
+    float reach = 0;   ///< m: how far its light is valid along the surface
+    float radius = 0;  ///< of its surfel, m
     Side side = kNone;
     Walls walls;  ///< up to the distance at which pixels use its light
     bool operator==(const GatheringPoint&) const = default;
@@ -62,8 +63,8 @@ struct Spacing {
 /// threads nor on where the work is interrupted.
 class PointChooser {
  public:
-    /// `tracer` must outlive it; `rays` a point.
-    PointChooser(const tracing::SurfelTracer& tracer, const Spacing& spacing, uint32_t rays, uint64_t seed);
+    /// `surfaces` must outlive it; `rays` a point.
+    PointChooser(const Surfaces& surfaces, const Spacing& spacing, uint32_t rays, uint64_t seed);
 
     /// What has been done.
     struct State {
@@ -87,7 +88,7 @@ class PointChooser {
     bool is_narrow(Side side, const glm::vec3& normal) const;
     void start_over();
 
-    const tracing::SurfelTracer& tracer_;
+    const Surfaces& surfaces_;
     uint32_t rays_;
     uint64_t seed_;
     std::vector<Side> order_;

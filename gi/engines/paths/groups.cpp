@@ -45,9 +45,8 @@ uint32_t Groups::fitting(uint32_t leaf, float width) const {
     return group;
 }
 
-GroupBuilder::GroupBuilder(const tracing::SurfelTracer& tracer, std::span<const RayHit> hits,
-                           float least_cell)
-    : tracer_(tracer), surfels_(tracer.surfels()), leaf_of_(2 * tracer.surfels().size(), kNone) {
+GroupBuilder::GroupBuilder(const Surfaces& surfaces, std::span<const RayHit> hits, float least_cell)
+    : surfaces_(surfaces), surfels_(surfaces.surfels()), leaf_of_(2 * surfels_.size(), kNone) {
     const std::span surfels = surfels_;
     glm::vec3 low(3e38f), high(-3e38f);
     for (const Surfel& s : surfels) {
@@ -68,6 +67,9 @@ GroupBuilder::GroupBuilder(const tracing::SurfelTracer& tracer, std::span<const 
     }
     octree::sort_by_code(codes, 3 * kLevels);
     for (const octree::CodeIndex& code : codes) order_.push_back(code.index);
+    is_met_.assign(surfaces.parts().size(), false);
+    for (const RayHit& hit : hits)
+        if (hit.side != kNone && surfaces.is_part(hit.side)) is_met_[hit.side / 2 - surfaces.discs()] = true;
     // The level whose cells fit into the narrowest ray that ends on each surfel.
     std::vector<uint8_t> wanted(surfels.size(), 0);
     for (const RayHit& hit : hits) {
@@ -105,8 +107,25 @@ GroupBuilder::GroupBuilder(const tracing::SurfelTracer& tracer, std::span<const 
         }
         if (!finer.empty()) levels_.push_back(std::move(finer));
     }
+    for (size_t i = 0; i < is_met_.size(); ++i)
+        if (!is_met_[i]) leaf_of_[2 * (surfaces.discs() + i)] = leaf_of_[surfaces.parts()[i].side];
     airs_.resize(facts_.size());
     std::iota(airs_.begin(), airs_.end(), 0u);
+}
+
+/// Whether a side is in the leaves. Of the parts of discs most are inside of walls, where nothing meets them.
+bool GroupBuilder::is_there(Side side) const {
+    return !surfaces_.is_part(side) || (side % 2 == 0 && is_met_[side / 2 - surfaces_.discs()]);
+}
+
+/// Returns a side's share of the surface, m^2, with those of its parts that are not there.
+float GroupBuilder::area_of(Side side) const {
+    float area = surfaces_.area_of(side);
+    for (const CutOffPart& part : surfaces_.parts_of(side)) {
+        const Side of_part = surfaces_.side_of_part(part);
+        if (!is_there(of_part)) area += surfaces_.area_of(of_part);
+    }
+    return area;
 }
 
 void GroupBuilder::add(Facts& sum, const Facts& more) {
@@ -126,8 +145,8 @@ void GroupBuilder::add_leaf(std::span<const Side> sides, uint32_t facing) {
     Facts facts{.facing = facing};
     for (const Side side : sides) {
         const Surfel& s = surfels_[side / 2];
-        const float weight = std::max(s.area, kLeastWeight);
-        add(facts, {weight * normal_of(surfels_, side), s.position, weight, std::max(s.area, 0.0f), s.radius,
+        const float area = area_of(side), weight = std::max(area, kLeastWeight);
+        add(facts, {weight * normal_of(surfels_, side), s.position, weight, area, s.radius,
                     start_at(surfels_, side)});
         leaf_of_[side] = number;
     }
@@ -143,7 +162,8 @@ void GroupBuilder::make_leaves(Cell& cell) {
     std::array<std::vector<Side>, 2 * kFacings> facing;  // of fronts, then of backs
     for (size_t i = cell.first; i < cell.last; ++i)
         for (const Side side : {2 * order_[i], 2 * order_[i] + 1})
-            facing[facing_of(normal_of(surfels_, side)) + side % 2 * kFacings].push_back(side);
+            if (is_there(side))
+                facing[facing_of(normal_of(surfels_, side)) + side % 2 * kFacings].push_back(side);
     for (uint32_t f = 0; f < 2 * kFacings; ++f) {
         std::vector<Side>& sides = facing[f];
         if (sides.empty()) continue;
@@ -181,19 +201,14 @@ std::vector<std::vector<Side>> GroupBuilder::divided_by_walls(std::span<const Si
     for (const Side side : sheet) {
         // The last one of a part is usually the nearest.
         auto own = std::ranges::find_if(parts, [&](const std::vector<Side>& part) {
-            return see_each_other(side, part.back()) || see_each_other(side, part.front());
+            return surfaces_.see_each_other(side, part.back()) ||
+                   surfaces_.see_each_other(side, part.front());
         });
         if (own == parts.end() && parts.size() == kMostDivided) --own;
         if (own == parts.end()) own = parts.emplace(own);
         own->push_back(side);
     }
     return parts;
-}
-
-bool GroupBuilder::see_each_other(Side one, Side other) const {
-    const RayStart from = start_at(surfels_, one), to = start_at(surfels_, other);
-    return !tracer_.occluded(tracing::offset_origin(from.position, from.normal, from.radius),
-                             tracing::offset_origin(to.position, to.normal, to.radius));
 }
 
 void GroupBuilder::connect(uint32_t leaf, uint32_t other) {
@@ -229,8 +244,8 @@ bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) const {
     const glm::vec3 from = origin(one.middle), to = origin(other.middle);
     const glm::vec3 over = (from + to) / 2.0f + mean * (turn * along / 4);
     // Both rays go a little farther, or a wall in the middle would end both.
-    return !tracer_.occluded(from, over + kFarther * (over - from)) &&
-           !tracer_.occluded(to, over + kFarther * (over - to));
+    return !surfaces_.tracer().occluded(from, over + kFarther * (over - from)) &&
+           !surfaces_.tracer().occluded(to, over + kFarther * (over - to));
 }
 
 Groups GroupBuilder::join() const {

@@ -8,7 +8,7 @@
 
 #include "gi/engines/paths/cosine_rays.h"
 #include "gi/engines/paths/sides.h"
-#include "gi/tracing/surfel_tracer.h"
+#include "gi/engines/paths/surfaces.h"
 
 namespace lucarne::gi::paths {
 
@@ -43,8 +43,8 @@ struct Groups {
 class GroupBuilder {
  public:
     /// Divides cells until they fit into the narrowest ray that ends in them, or are about `least_cell`, m.
-    /// `tracer` must outlive it.
-    GroupBuilder(const tracing::SurfelTracer& tracer, std::span<const RayHit> hits, float least_cell);
+    /// `surfaces` must outlive it.
+    GroupBuilder(const Surfaces& surfaces, std::span<const RayHit> hits, float least_cell);
 
     uint32_t leaves() const { return static_cast<uint32_t>(facts_.size()); }
     std::span<const uint32_t> leaf_of() const { return leaf_of_; }
@@ -76,22 +76,24 @@ class GroupBuilder {
                  last_part = 0;  ///< its children, cells of the next level; none: its leaves follow
         uint32_t first_leaf = 0, last_leaf = 0;
     };
+    bool is_there(Side side) const;
+    float area_of(Side side) const;
     void make_leaves(Cell& cell);
     void add_leaf(std::span<const Side> sides, uint32_t facing);
     std::vector<uint32_t> find_airs() const;
     std::vector<std::vector<Side>> divided_by_walls(std::span<const Side> sheet) const;
-    bool see_each_other(Side one, Side other) const;
     bool on_one_surface(const Facts& one, const Facts& other) const;
     static void add(Facts& sum, const Facts& more);
 
-    const tracing::SurfelTracer& tracer_;
+    const Surfaces& surfaces_;
     std::span<const Surfel> surfels_;
     float edge_ = 0;                         ///< of the octree, m
     std::vector<uint32_t> order_;            ///< surfels along a curve through space
     std::vector<std::vector<Cell>> levels_;  ///< from the root
     std::vector<Facts> facts_;               ///< of leaves
     std::vector<uint32_t> leaf_of_;
-    std::vector<Side> sides_;  ///< of leaves, in their order
+    std::vector<bool> is_met_;  ///< of each part of a disc: whether a ray meets it
+    std::vector<Side> sides_;   ///< of leaves, in their order
     std::vector<uint32_t> starts_{0};
     std::vector<uint32_t> airs_;  ///< of leaves: the next one of a tree, which ends at its root
 };

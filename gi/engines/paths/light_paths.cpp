@@ -20,9 +20,9 @@ constexpr size_t kOriginsAtOnce = 2048, kOriginsAPiece = 16, kPathsAPiece = 1024
 /// Returns which of these sides lies at a share 0..1 of the area of all, in their order.
 class ByArea {
  public:
-    ByArea(std::span<const Surfel> surfels, std::span<const Side> sides) : sides_(sides) {
+    ByArea(const Surfaces& surfaces, std::span<const Side> sides) : sides_(sides) {
         for (const Side side : sides) {
-            total_ += std::max(surfels[side / 2].area, 1e-12f);
+            total_ += std::max(surfaces.area_of(side), 1e-12f);
             ends_.push_back(total_);
         }
     }
@@ -39,28 +39,48 @@ class ByArea {
 
 }  // namespace
 
-EntryPoints choose_entries(std::span<const Surfel> surfels, const GroupBuilder& builder,
-                           std::span<const float> areas, std::span<const uint8_t> used, uint64_t count) {
+EntryPoints choose_entries(const Surfaces& surfaces, const GroupBuilder& builder,
+                           std::span<const float> areas, std::span<const uint8_t> used,
+                           std::span<const RayHit> hits, uint64_t count) {
     EntryPoints entries;
+    const std::span<const uint32_t> leaf_of = builder.leaf_of();
     double total = 0;
+    std::vector<uint32_t> met(builder.leaves(), 0);
+    for (const RayHit& hit : hits)
+        if (hit.side != kNone) ++met[leaf_of[hit.side]];
     for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf)
         if (used[leaf]) total += areas[leaf];
     for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf) {
         entries.first.push_back(static_cast<uint32_t>(entries.sides.size()));
         if (!used[leaf]) continue;
         const std::span<const Side> sides = builder.sides_of(leaf);
-        const ByArea places(surfels, sides);
         const double share = total > 0 ? areas[leaf] / total : 0, most = static_cast<double>(sides.size());
-        const double own = std::clamp(std::round(share * static_cast<double>(count)), 1.0, most);
-        for (double i = .5; i < own; ++i) entries.sides.push_back(places.at(i / own));
+        const auto own =
+            static_cast<uint32_t>(std::clamp(std::round(share * static_cast<double>(count)), 1.0, most));
+        if (met[leaf] > 0) {
+            entries.sides.insert(entries.sides.end(), std::min(own, met[leaf]), kNone);
+            continue;
+        }
+        const ByArea places(surfaces, sides);
+        for (uint32_t i = 0; i < own; ++i) entries.sides.push_back(places.at((i + .5) / own));
     }
     entries.first.push_back(static_cast<uint32_t>(entries.sides.size()));
+    // Every so many of the hits of a leaf, in their order.
+    std::vector<uint32_t> gone(builder.leaves(), 0);
+    for (const RayHit& hit : hits) {
+        if (hit.side == kNone || !used[leaf_of[hit.side]]) continue;
+        const uint32_t leaf = leaf_of[hit.side], first = entries.first[leaf];
+        const uint64_t own = entries.first[leaf + 1] - first, number = gone[leaf]++;
+        const uint64_t place = (2 * number + 1) * own / (2 * uint64_t{met[leaf]});
+        if ((2 * number + 1) * own % (2 * uint64_t{met[leaf]}) < 2 * own)
+            entries.sides[first + place] = hit.side;
+    }
     return entries;
 }
 
-LinkBuilder::LinkBuilder(const tracing::SurfelTracer& tracer, const GroupBuilder& builder,
-                         const Groups& groups, float reach, uint64_t seed)
-    : tracer_(tracer),
+LinkBuilder::LinkBuilder(const Surfaces& surfaces, const GroupBuilder& builder, const Groups& groups,
+                         float reach, uint64_t seed)
+    : surfaces_(surfaces),
       builder_(builder),
       groups_(groups),
       reach_(reach),
@@ -121,18 +141,18 @@ bool LinkBuilder::advance() {
         for (size_t i = first + begin; i < first + end; ++i) {
             const uint32_t origin = origins_[i];
             const std::vector<Side> sides = sides_of(origin);
-            const ByArea starts(tracer_.surfels(), sides);
+            const ByArea starts(surfaces_, sides);
             const double shift = Random(seed_, origin).uniform();
             for (uint32_t link = 0; link < kLinks; ++link) {
                 // Places and directions are both even; a stride that is prime to kLinks makes them
                 // independent.
                 const Side side = starts.at(((link * 29) % kLinks + shift) / kLinks);
-                const RayStart start = start_at(tracer_.surfels(), side);
+                const RayStart start = start_at(surfaces_.surfels(), side);
                 const glm::dvec2 at = even_point(link, seed_, origin);
                 float distance = 0;
                 const glm::vec3 direction = cosine_direction(start.normal, at);
                 directions[(i - first) * kLinks + link] = encode_octahedral(direction);
-                const RayHit hit = follow(tracer_, start, direction, kLinks, distance);
+                const RayHit hit = follow(surfaces_, start, direction, kLinks, distance);
                 if (hit.side != kNone)
                     links_.groups[i * kLinks + link] = groups_.fitting(groups_.leaf_of[hit.side], hit.width);
             }
@@ -151,9 +171,8 @@ bool LinkBuilder::advance() {
     return next_ < origins_.size();
 }
 
-void trace_photons(const tracing::SurfelTracer& tracer, std::span<const uint32_t> leaf_of,
-                   const EntryPoints& entries, size_t first, size_t last, uint64_t seed,
-                   std::span<uint32_t> leaves) {
+void trace_photons(const Surfaces& surfaces, std::span<const uint32_t> leaf_of, const EntryPoints& entries,
+                   size_t first, size_t last, uint64_t seed, std::span<uint32_t> leaves) {
     parallel_ranges(last - first, kPathsAPiece, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const size_t entry = first + i;
@@ -162,12 +181,12 @@ void trace_photons(const tracing::SurfelTracer& tracer, std::span<const uint32_t
                 uint32_t& leaf = leaves[i * (kVertices - 1) + vertex - 1];
                 leaf = kNone;
                 if (side == kNone) continue;
-                const RayStart start = start_at(tracer.surfels(), side);
+                const RayStart start = start_at(surfaces.surfels(), side);
                 // Entry points stand beside each other in their order, so consecutive points are even
                 // there as well.
                 const glm::dvec2 at = even_point(static_cast<uint32_t>(entry), seed, vertex);
                 float distance = 0;
-                side = follow(tracer, start, cosine_direction(start.normal, at), 1, distance).side;
+                side = follow(surfaces, start, cosine_direction(start.normal, at), 1, distance).side;
                 if (side != kNone) leaf = leaf_of[side];
             }
         }

@@ -10,7 +10,7 @@
 
 #include "gi/engines/paths/groups.h"
 #include "gi/engines/paths/sides.h"
-#include "gi/tracing/surfel_tracer.h"
+#include "gi/engines/paths/surfaces.h"
 
 namespace lucarne::gi::paths {
 
@@ -23,9 +23,12 @@ struct EntryPoints {
 };
 
 /// Chooses about `count` entry points, in proportion to area, but at least one in each leaf that `used`
-/// names, and none in others.
-EntryPoints choose_entries(std::span<const Surfel> surfels, const GroupBuilder& builder,
-                           std::span<const float> areas, std::span<const uint8_t> used, uint64_t count);
+/// names, and none in others. They are sides that `hits` met, each as often as it was met: what of a leaf a
+/// room sees may be darker than the rest, as in the reveal of a window. In leaves that none met they are
+/// spread by area.
+EntryPoints choose_entries(const Surfaces& surfaces, const GroupBuilder& builder,
+                           std::span<const float> areas, std::span<const uint8_t> used,
+                           std::span<const RayHit> hits, uint64_t count);
 
 /// Rays of a place that tell how the light of others reaches it.
 inline constexpr uint32_t kLinks = 64;
@@ -45,8 +48,8 @@ class LinkBuilder {
  public:
     /// `reach`, m: of the cells from all over which links start, unless leaves are larger. The references
     /// must outlive it.
-    LinkBuilder(const tracing::SurfelTracer& tracer, const GroupBuilder& builder, const Groups& groups,
-                float reach, uint64_t seed);
+    LinkBuilder(const Surfaces& surfaces, const GroupBuilder& builder, const Groups& groups, float reach,
+                uint64_t seed);
     /// Asks for the light of a group.
     void ask(uint32_t group);
     /// Traces some links. Returns whether any are left.
@@ -60,7 +63,7 @@ class LinkBuilder {
  private:
     std::vector<Side> sides_of(uint32_t group) const;
 
-    const tracing::SurfelTracer& tracer_;
+    const Surfaces& surfaces_;
     const GroupBuilder& builder_;
     const Groups& groups_;
     float reach_;
@@ -76,8 +79,7 @@ class LinkBuilder {
 inline constexpr uint32_t kVertices = 4;
 /// Traces a path from each of the entry points [first, last): cosine directions at every vertex. Sets the
 /// leaves of the kVertices - 1 vertices after each entry point, kNone where the path has left the scene.
-void trace_photons(const tracing::SurfelTracer& tracer, std::span<const uint32_t> leaf_of,
-                   const EntryPoints& entries, size_t first, size_t last, uint64_t seed,
-                   std::span<uint32_t> leaves);
+void trace_photons(const Surfaces& surfaces, std::span<const uint32_t> leaf_of, const EntryPoints& entries,
+                   size_t first, size_t last, uint64_t seed, std::span<uint32_t> leaves);
 
 }  // namespace lucarne::gi::paths

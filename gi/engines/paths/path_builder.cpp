@@ -17,11 +17,11 @@ constexpr double kPointsShare = 0.75, kLinksShare = 0.2;
 
 }  // namespace
 
-PathBuilder::PathBuilder(const tracing::SurfelTracer& tracer, const PathPlan& plan)
-    : tracer_(tracer), plan_(plan), chooser_(tracer, plan.spacing, plan.rays, plan.seed) {}
+PathBuilder::PathBuilder(const Surfaces& surfaces, const PathPlan& plan)
+    : surfaces_(surfaces), plan_(plan), chooser_(surfaces, plan.spacing, plan.rays, plan.seed) {}
 
 void PathBuilder::make_groups() {
-    groups_.emplace(tracer_, chooser_.state().hits, kLeastCell * chooser_.state().spacing.least);
+    groups_.emplace(surfaces_, chooser_.state().hits, kLeastCell * chooser_.state().spacing.least);
 }
 
 void PathBuilder::join_groups() {
@@ -31,7 +31,7 @@ void PathBuilder::join_groups() {
         if (state.hits[i].side != kNone)
             groups_->connect(leaf_of[state.points[i / plan_.rays].side], leaf_of[state.hits[i].side]);
     paths_.groups = groups_->join();
-    links_.emplace(tracer_, *groups_, paths_.groups, kLinkReach * state.spacing.most, plan_.seed);
+    links_.emplace(surfaces_, *groups_, paths_.groups, kLinkReach * state.spacing.most, plan_.seed);
     paths_.rays_a_point = plan_.rays;
     for (const RayHit& hit : state.hits) {
         const bool met = hit.side != kNone;
@@ -41,24 +41,40 @@ void PathBuilder::join_groups() {
 }
 
 void PathBuilder::make_entries() {
-    paths_.entries =
-        choose_entries(tracer_.surfels(), *groups_, paths_.groups.area, links_->used(), plan_.entries);
+    paths_.entries = choose_entries(surfaces_, *groups_, paths_.groups.area, links_->used(),
+                                    chooser_.state().hits, plan_.entries);
     paths_.links = links_->take();
     paths_.photons.assign(paths_.entries.sides.size() * (kVertices - 1), kNone);
 }
 
 bool PathBuilder::make_photons() {
     const size_t count = paths_.entries.sides.size(), last = std::min(count, next_path_ + kPathsAtOnce);
-    trace_photons(tracer_, groups_->leaf_of(), paths_.entries, next_path_, last, plan_.seed,
+    trace_photons(surfaces_, groups_->leaf_of(), paths_.entries, next_path_, last, plan_.seed,
                   std::span(paths_.photons).subspan(next_path_ * (kVertices - 1)));
     next_path_ = last;
     return next_path_ < count;
 }
 
 LightPaths PathBuilder::take() {
+    keep_parts();
     paths_.points = chooser_.take().points;
     paths_.groups.leaf_of.clear();
     return std::move(paths_);
+}
+
+/// Keeps those parts of discs on which entry points are.
+void PathBuilder::keep_parts() {
+    std::vector<uint32_t> kept(surfaces_.parts().size(), kNone);
+    const auto discs = static_cast<uint32_t>(surfaces_.discs());
+    for (Side& side : paths_.entries.sides) {
+        if (!surfaces_.is_part(side)) continue;
+        uint32_t& number = kept[side / 2 - discs];
+        if (number == kNone) {
+            number = static_cast<uint32_t>(paths_.parts.size());
+            paths_.parts.push_back(surfaces_.parts()[side / 2 - discs]);
+        }
+        side = 2 * (discs + number);
+    }
 }
 
 double PathBuilder::share() const {

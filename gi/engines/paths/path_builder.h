@@ -23,8 +23,8 @@ struct PathPlan {
 /// repeated until nothing is.
 class PathBuilder {
  public:
-    /// `tracer` must outlive it.
-    PathBuilder(const tracing::SurfelTracer& tracer, const PathPlan& plan);
+    /// `surfaces` must outlive it.
+    PathBuilder(const Surfaces& surfaces, const PathPlan& plan);
 
     bool choose_points() { return chooser_.advance(); }
     void make_groups();
@@ -42,7 +42,9 @@ class PathBuilder {
     bool restore(PointChooser::State state) { return chooser_.restore(std::move(state)); }
 
  private:
-    const tracing::SurfelTracer& tracer_;
+    void keep_parts();
+
+    const Surfaces& surfaces_;
     PathPlan plan_;
     PointChooser chooser_;
     std::optional<GroupBuilder> groups_;

@@ -20,6 +20,7 @@
 #include "gi/engines/paths/pixel_points.h"
 #include "gi/engines/paths/point_sky.h"
 #include "gi/engines/paths/relight.h"
+#include "gi/engines/paths/seen_points.h"
 #include "gi/engines/paths/sky_rays.h"
 #include "gi/gather/gather_options.h"
 #include "gi/gather/gather_sky.h"
@@ -69,14 +70,18 @@ class PathsEngine final : public Engine {
         SceneRevisions scene;
         LightCutRevisions cuts;
         std::vector<Light> lights;  ///< of the views
+        bool is_traced = false;     ///< shadows by rays, not by maps
         bool operator==(const Basis&) const = default;
     };
+    Result<void> make_tracer(Frame& frame);
     Result<void> add_direct(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const SkyDirections& sky_directions(const EngineSettings& settings) const;
     const PointSky* point_sky(const EngineSettings& settings);
     Result<void> bounce(Frame& frame, const std::vector<LightView>& views, bool any_state);
     Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const ArrivingLight* arriving_light(Frame& frame, std::span<const Material> materials);
+    void visit_points(const Frame& frame, PixelPoints::List list, std::span<const SurfacePoint> surfaces,
+                      const PixelPoints::Visit& visit);
     void add_by_grid(const Frame& frame, std::span<const Material> materials,
                      std::span<const GBufferTexel> texels, uint32_t step, std::span<glm::vec4> radiance);
     void add_indirect(Frame& frame);
@@ -128,16 +133,20 @@ Result<void> PathsEngine::prepare(Frame& frame) {
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }
 
+/// Makes the tracer of the light cut.
+Result<void> PathsEngine::make_tracer(Frame& frame) {
+    if (tracer_ && tracer_of_ == cuts_.light) return {};
+    const TimedPass pass(frame, "surfels for tracing");
+    tracer_.reset();
+    LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
+    tracer_of_ = cuts_.light;
+    return {};
+}
+
 /// Adds the first reflection of the lights. `any_state`: maps of an earlier state of their cuts will do.
 Result<void> PathsEngine::add_direct(Frame& frame, const std::vector<LightView>& views, bool any_state) {
     Device& device = frame.gl.device;
     if (traces_shadows(frame)) {
-        if (!tracer_ || tracer_of_ != cuts_.light) {
-            const TimedPass pass(frame, "surfels for tracing");
-            tracer_.reset();
-            LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
-            tracer_of_ = cuts_.light;
-        }
         timed(frame, "direct light",
               [&] { add_traced_light(frame, *tracer_, sky_directions(frame.settings)); });
         return {};
@@ -180,7 +189,8 @@ Result<void> PathsEngine::bounce(Frame& frame, const std::vector<LightView>& vie
     {
         const TimedPass pass(frame, "entry points");
         LUCARNE_TRY(entry_light_.set_entries(frame, relight_->shared_bake()));
-        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, views, light_gbuffers_, any_state));
+        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, views, light_gbuffers_, any_state,
+                                                         traces_shadows(frame) ? tracer_.get() : nullptr));
     }
     if (frame.stopped()) return {};
     const bool only = s[kOnlyBounce] >= 0;
@@ -195,11 +205,14 @@ Result<void> PathsEngine::bounce(Frame& frame, const std::vector<LightView>& vie
 
 /// Brings the light at the gathering points up to date.
 Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& views, bool any_state) {
-    Basis basis{scene_, cuts_, {}};
+    Basis basis{scene_, cuts_, {}, traces_shadows(frame)};
     for (const LightView& view : views) basis.lights.push_back(view.light);
     // In motion nodes arrive all the time, and light of a moment ago will do.
     if (any_state) basis.cuts = light_of_.cuts;
+    // Light by rays stays while the camera moves.
+    const bool is_traced = std::exchange(basis.is_traced, basis.is_traced || light_of_.is_traced);
     if (!irradiance_.empty() && light_of_ == basis) return {};
+    basis.is_traced = is_traced;
     basis.cuts = cuts_;
     irradiance_.clear();
     const bool indirect = wants_indirect(frame.settings);
@@ -234,6 +247,17 @@ const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const M
     return &*arriving_;
 }
 
+/// Visits the gathering points of pixels, as PixelPoints; at rest those that pixels see.
+void PathsEngine::visit_points(const Frame& frame, PixelPoints::List list,
+                               std::span<const SurfacePoint> surfaces, const PixelPoints::Visit& visit) {
+    if (!traces_shadows(frame)) return pixel_points_.visit(list, surfaces, visit);
+    const SeenPoints points(*tracer_, relight_->bake(), frame.bake_offset, irradiance_);
+    pixel_points_.visit(list, surfaces, [&](size_t i, std::span<const PointShare> about) {
+        std::vector<PointShare> seen;
+        visit(i, frame.stopped() ? about : points.about(surfaces[i], about, seen));
+    });
+}
+
 /// Finds the light at one pixel in each square of `step`, and adds what all pixels reflect: between these it
 /// is interpolated where they lie in one plane.
 void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> materials,
@@ -247,7 +271,7 @@ void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> mate
             pixels.push_back(grid.pixel(column, row));
     const std::vector<SurfacePoint> places = visible_surfaces(frame.camera, texels, pixels);
     std::vector<native::GridLight> lights(pixels.size());
-    pixel_points_.visit(PixelPoints::List::grid, places, [&](size_t i, std::span<const PointShare> about) {
+    visit_points(frame, PixelPoints::List::grid, places, [&](size_t i, std::span<const PointShare> about) {
         lights[i] = {places[i].position - glm::vec3(frame.camera.origin), 1, places[i].normal,
                      irradiance_of(about, irradiance_)};
     });
@@ -255,7 +279,7 @@ void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> mate
     const std::vector<uint32_t> rest =
         native::add_grid_light({frame.camera, texels, grid, lights, reflectances, radiance});
     const std::vector<SurfacePoint> others = visible_surfaces(frame.camera, texels, rest);
-    pixel_points_.visit(PixelPoints::List::rest, others, [&](size_t i, std::span<const PointShare> about) {
+    visit_points(frame, PixelPoints::List::rest, others, [&](size_t i, std::span<const PointShare> about) {
         const Reflectance r =
             make_reflectance(materials[others[i].material % materials.size()], others[i].albedo);
         radiance[rest[i]] += glm::vec4(r.kd / kPi * irradiance_of(about, irradiance_), 0);
@@ -281,8 +305,8 @@ void PathsEngine::add_indirect(Frame& frame) {
         add_by_grid(frame, materials, texels, step, radiance);
     } else {
         const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
-        pixel_points_.visit(
-            PixelPoints::List::grid, surfaces, [&](size_t i, std::span<const PointShare> about) {
+        visit_points(
+            frame, PixelPoints::List::grid, surfaces, [&](size_t i, std::span<const PointShare> about) {
                 if ((about.empty() && !sky_rays) || frame.stopped()) return;
                 const SurfacePoint& at = surfaces[i];
                 glm::vec3 irradiance = irradiance_of(about, irradiance_);
@@ -308,6 +332,7 @@ Result<void> PathsEngine::render(Frame& frame) {
     if (!direct && !at_points) return {};
     if (direct)
         LUCARNE_TRY(timed(frame, "emission", [&] { return add_own_light(frame, materials_, sky_, false); }));
+    if (traces_shadows(frame)) LUCARNE_TRY(make_tracer(frame));
     // In motion shadows may be those of a moment ago; they are renewed as far as the time goes.
     const bool in_parts = frame.moving && !frame.light_budget.whole();
     if (!in_parts) light_index_ = frame.index;

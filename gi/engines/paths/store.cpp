@@ -75,6 +75,7 @@ BakeSections write_paths(const LightPaths& paths) {
     put(sections, "photons", paths.photons);
     put(sections, "entries", paths.entries.sides);
     put(sections, "entries of leaves", paths.entries.first);
+    put(sections, "parts of entries", paths.parts);
     put(sections, "parents", groups.parent);
     put(sections, "areas", groups.area);
     put(sections, "cells", groups.cell);
@@ -96,6 +97,7 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     LUCARNE_TRY(take(sections, "photons", paths.photons));
     LUCARNE_TRY(take(sections, "entries", paths.entries.sides));
     LUCARNE_TRY(take(sections, "entries of leaves", paths.entries.first));
+    LUCARNE_TRY(take(sections, "parts of entries", paths.parts));
     LUCARNE_TRY(take(sections, "parents", groups.parent));
     LUCARNE_TRY(take(sections, "areas", groups.area));
     LUCARNE_TRY(take(sections, "cells", groups.cell));
@@ -107,7 +109,7 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     groups.leaves = static_cast<uint32_t>(groups.parent.size() - (groups.first.size() - 1));
     if (!is_sound(groups)) return damaged("children");
     const auto is_point = [](const GatheringPoint& p) {
-        return p.reach > 0 && std::isfinite(p.reach + glm::dot(p.position, p.position)) &&
+        return p.reach > 0 && std::isfinite(p.reach + p.radius + glm::dot(p.position, p.position)) &&
                std::isfinite(glm::dot(p.normal, p.normal)) && p.walls.are_finite();
     };
     if (!std::ranges::all_of(paths.points, is_point)) return damaged("points");
@@ -122,6 +124,10 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
         return damaged("links");
     if (!are_ranges(paths.entries.first, groups.leaves, paths.entries.sides.size()))
         return damaged("entries");
+    if (!std::ranges::all_of(paths.parts, [](const CutOffPart& part) {
+            return std::isfinite(glm::dot(part.position, part.position));
+        }))
+        return damaged("parts of entries");
     if (paths.photons.size() != paths.entries.sides.size() * (kVertices - 1) ||
         !all_below(paths.photons, groups.leaves, true))
         return damaged("photons");

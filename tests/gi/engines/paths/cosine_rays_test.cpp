@@ -34,14 +34,14 @@ TEST(CosineRays, CrossSectionsOfAllRaysCoverWhatTheySee) {
     // of their distances add up to that.
     std::vector<Surfel> surfels;
     add_rectangle(surfels, kO - 2.0f * kX - 2.0f * kY + 1.0f * kZ, 4.0f * kY, 4.0f * kX, 200, glm::vec3(.5f));
-    const auto tracer = tracer_of(surfels);
+    const Surfaces surfaces = surfaces_of(surfels);
     const RayStart start{kO, kZ, 1e-4f};
     constexpr uint32_t kCount = 4096;
     double angle = 0;
     for (uint32_t i = 0; i < kCount; ++i) {
         float distance = 0;
         const RayHit hit =
-            follow(*tracer, start, cosine_direction(kZ, even_point(i, 1, 2)), kCount, distance);
+            follow(surfaces, start, cosine_direction(kZ, even_point(i, 1, 2)), kCount, distance);
         if (hit.side == kNone) {
             EXPECT_EQ(distance, std::numeric_limits<float>::infinity());
             continue;
@@ -58,22 +58,22 @@ TEST(CosineRays, HarmonicMeanOfDistancesIsThatOfAPlane) {
     std::vector<Surfel> surfels;
     add_rectangle(surfels, kO - 20.0f * kX - 20.0f * kY + .5f * kZ, 40.0f * kY, 40.0f * kX, 300,
                   glm::vec3(.5f));
-    const auto tracer = tracer_of(surfels);
+    const Surfaces surfaces = surfaces_of(surfels);
     std::vector<RayHit> hits(1024);
     // 1 / distance = cos / d: its mean is 2 / (3 d).
-    EXPECT_NEAR(trace_rays(*tracer, {kO, kZ, 1e-4f}, 1, 2, hits), 1.5 * .5, .01);
+    EXPECT_NEAR(trace_rays(surfaces, {kO, kZ, 1e-4f}, 1, 2, hits), 1.5 * .5, .01);
     std::vector<RayHit> none(64);
-    EXPECT_GT(trace_rays(*tracer, {kO, -kZ, 1e-4f}, 1, 2, none), 1e6);
+    EXPECT_GT(trace_rays(surfaces, {kO, -kZ, 1e-4f}, 1, 2, none), 1e6);
 }
 
 TEST(CosineRays, FindTheFormFactorOfACubesFaces) {
     // Rays start a radius above their surfels, so these have to be small.
     constexpr uint32_t kOfAFace = 200 * 200;
-    const auto tracer = tracer_of(closed_box(1, 200, glm::vec3(.5f)));
+    const Surfaces surfaces = surfaces_of(closed_box(1, 200, glm::vec3(.5f)));
     uint64_t ceiling = 0, walls = 0, all = 0;
     std::vector<RayHit> hits(8);
     for (Side side = 0; side < 2 * kOfAFace; side += 2) {  // the front sides of the floor
-        trace_rays(*tracer, start_at(tracer->surfels(), side), 1, side, hits);
+        trace_rays(surfaces, start_at(surfaces.surfels(), side), 1, side, hits);
         for (const RayHit& hit : hits) {
             ++all;
             if (hit.side == kNone) continue;

@@ -11,8 +11,8 @@ namespace {
 constexpr Spacing kSpacing{.03f, .2f};
 constexpr float kTurn = .123257f;  // root of 1 - cos 10 degrees
 
-PointChooser::State all_points(const tracing::SurfelTracer& tracer) {
-    PointChooser chooser(tracer, kSpacing, 64, 1);
+PointChooser::State all_points(const Surfaces& surfaces) {
+    PointChooser chooser(surfaces, kSpacing, 64, 1);
     while (chooser.advance()) {
     }
     return chooser.take();
@@ -20,18 +20,18 @@ PointChooser::State all_points(const tracing::SurfelTracer& tracer) {
 
 class GatheringPoints : public testing::Test {
  protected:
-    std::unique_ptr<tracing::SurfelTracer> tracer_ = tracer_of(scenes::closed_box(1, 60, glm::vec3(.5f)));
+    const Surfaces surfaces_ = surfaces_of(scenes::closed_box(1, 60, glm::vec3(.5f)));
 };
 
 TEST_F(GatheringPoints, ReachEverySideAndNoneCoversAnother) {
-    const auto state = all_points(*tracer_);
-    for (Side side = 0; side < 2 * tracer_->surfels().size(); ++side) {
+    const auto state = all_points(surfaces_);
+    for (Side side = 0; side < 2 * surfaces_.tracer().surfels().size(); ++side) {
         double least = 1e9;
         for (const GatheringPoint& point : state.points)
-            if (!point.is_hidden(tracer_->surfels()[side / 2].position))
-                least = std::min<double>(
-                    least, error_of(point, point.reach, kTurn, tracer_->surfels()[side / 2].position,
-                                    normal_of(tracer_->surfels(), side)));
+            if (!point.is_hidden(surfaces_.tracer().surfels()[side / 2].position))
+                least = std::min<double>(least, error_of(point, point.reach, kTurn,
+                                                         surfaces_.tracer().surfels()[side / 2].position,
+                                                         normal_of(surfaces_.tracer().surfels(), side)));
         // None is in the very corner, under the rims of the discs of two walls.
         ASSERT_LT(least, kPixelReach) << side;
     }
@@ -45,7 +45,7 @@ TEST_F(GatheringPoints, ReachEverySideAndNoneCoversAnother) {
 }
 
 TEST_F(GatheringPoints, AreDenserInCornersAndSparseOutside) {
-    const auto state = all_points(*tracer_);
+    const auto state = all_points(surfaces_);
     size_t inside = 0, outside = 0;
     for (const GatheringPoint& point : state.points) {
         EXPECT_GE(point.reach, kSpacing.least);
@@ -68,9 +68,9 @@ TEST(GatheringPointsInGaps, AreNotThere) {
     scenes::add_rectangle(surfels, {-1, -1, 0}, 2.0f * kX, 2.0f * kY, 80, glm::vec3(.5f));
     const float radius = surfels[0].radius;
     scenes::add_rectangle(surfels, {-.3f, -.3f, 1.5f * radius}, .6f * kX, .6f * kY, 24, glm::vec3(.5f));
-    const auto tracer = tracer_of(surfels);
+    const Surfaces surfaces = surfaces_of(surfels);
     size_t on_top = 0;
-    for (const GatheringPoint& point : all_points(*tracer).points) {
+    for (const GatheringPoint& point : all_points(surfaces).points) {
         if (std::max(std::abs(point.position.x), std::abs(point.position.y)) > .25f) continue;
         EXPECT_TRUE(point.position.z > 0 ? point.normal.z > 0 : point.normal.z < 0) << point.position.x;
         on_top += point.position.z > 0 && point.normal.z > 0;
@@ -82,8 +82,8 @@ TEST(GatheringPointsAboutAWall, ServeTheirOwnSideOfItOnly) {
     std::vector<Surfel> surfels;
     scenes::add_rectangle(surfels, {-1, 0, 0}, 2.0f * kX, kY, 60, glm::vec3(.5f));
     scenes::add_rectangle(surfels, {0, -.5f, -.5f}, 2.0f * kY, 2.0f * kZ, 60, glm::vec3(.5f));
-    const auto tracer = tracer_of(surfels);
-    const auto state = all_points(*tracer);
+    const Surfaces surfaces = surfaces_of(surfels);
+    const auto state = all_points(surfaces);
     int before = 0, behind = 0;
     for (const GatheringPoint& point : state.points) {
         if (std::abs(point.normal.z) < .9f || point.position.y < .2f || point.position.y > .8f) continue;
@@ -101,11 +101,11 @@ TEST(GatheringPointsAboutAWall, ServeTheirOwnSideOfItOnly) {
 }
 
 TEST_F(GatheringPoints, AreTheSameWhereverTheyWereInterruptedAndWithOneThread) {
-    const auto whole = all_points(*tracer_);
+    const auto whole = all_points(surfaces_);
     const ThreadLimit one(1);
-    PointChooser first(*tracer_, kSpacing, 64, 1);
+    PointChooser first(surfaces_, kSpacing, 64, 1);
     for (int i = 0; i < 5; ++i) first.advance();
-    PointChooser second(*tracer_, kSpacing, 64, 1);
+    PointChooser second(surfaces_, kSpacing, 64, 1);
     ASSERT_TRUE(second.restore(first.take()));
     while (second.advance()) {
     }
@@ -115,11 +115,11 @@ TEST_F(GatheringPoints, AreTheSameWhereverTheyWereInterruptedAndWithOneThread) {
 }
 
 TEST_F(GatheringPoints, DamagedOnesAreNotContinued) {
-    const auto state = all_points(*tracer_);
+    const auto state = all_points(surfaces_);
     const auto refuses = [&](const auto& damage) {
         auto wrong = state;
         damage(wrong);
-        return !PointChooser(*tracer_, kSpacing, 64, 1).restore(wrong);
+        return !PointChooser(surfaces_, kSpacing, 64, 1).restore(wrong);
     };
     EXPECT_FALSE(refuses([](auto&) {}));
     EXPECT_TRUE(refuses([](auto& s) { s.points[3].side = 1'000'000; }));

@@ -15,8 +15,8 @@ template <class Connected>
 Groups groups_of(const std::vector<Surfel>& surfels, float width, const Connected& connected) {
     std::vector<RayHit> hits;
     for (Side side = 0; side < 2 * surfels.size(); ++side) hits.push_back({side, width});
-    const auto tracer = tracer_of(surfels);
-    GroupBuilder builder(*tracer, hits, 0);
+    const Surfaces surfaces = surfaces_of(surfels);
+    GroupBuilder builder(surfaces, hits, 0);
     for (uint32_t a = 0; a < builder.leaves(); ++a)
         for (uint32_t b = a + 1; b < builder.leaves(); ++b)
             if (connected(builder.sides_of(a).front(), builder.sides_of(b).front())) builder.connect(a, b);
@@ -61,13 +61,13 @@ TEST(Groups, HoldEverySideOnceAndTheirAreasAddUp) {
 TEST(Groups, CellsFitIntoTheNarrowestRay) {
     const auto surfels = scenes::closed_box(1, 64, glm::vec3(.5f));
     std::vector<RayHit> hits = {{0, .05f}, {2 * 64 * 64, .3f}};
-    const auto tracer = tracer_of(surfels);
-    GroupBuilder builder(*tracer, hits, 0);
+    const Surfaces surfaces = surfaces_of(surfels);
+    GroupBuilder builder(surfaces, hits, 0);
     const Groups groups = builder.join();
     EXPECT_LE(groups.cell[groups.leaf_of[0]], .0625f);
     const uint32_t far_from_it = groups.leaf_of[2 * (2 * 64 * 64 - 1)];
     EXPECT_GT(groups.cell[far_from_it], .2f);
-    GroupBuilder bounded(*tracer, hits, .4f);
+    GroupBuilder bounded(surfaces, hits, .4f);
     EXPECT_LT(bounded.leaves(), builder.leaves());
 }
 
@@ -154,8 +154,8 @@ TEST(Groups, ReachOverTheBackOfACurvedSurface) {
 }
 
 TEST(Groups, OfNothingAreNone) {
-    const auto none = tracer_of({});
-    const Groups groups = GroupBuilder(*none, {}, 0).join();
+    const Surfaces none = surfaces_of({});
+    const Groups groups = GroupBuilder(none, {}, 0).join();
     EXPECT_EQ(groups.count(), 0u);
 }
 

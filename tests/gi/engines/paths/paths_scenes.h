@@ -11,6 +11,7 @@
 #include "gi/bounce_options.h"
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/options.h"
+#include "gi/engines/paths/surfaces.h"
 #include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi::paths {
@@ -49,6 +50,11 @@ inline std::unique_ptr<tracing::SurfelTracer> tracer_of(std::vector<Surfel> surf
     auto made = tracing::SurfelTracer::create(std::move(surfels));
     EXPECT_TRUE(made) << made.error().line();
     return std::move(*made);
+}
+
+/// Returns the surfaces of these surfels.
+inline Surfaces surfaces_of(std::vector<Surfel> surfels) {
+    return Surfaces(tracer_of(std::move(surfels)));
 }
 
 }  // namespace lucarne::gi::paths

@@ -1,0 +1,123 @@
+#include "gi/engines/paths/surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "gi/shared/edge.h"
+#include "gi/tracing/light_sampling.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+/// Places near the rim of a disc that are tested, at this share of its radius: pairs lie opposite each other.
+constexpr size_t kPlaces = 6;
+constexpr float kNearRim = 0.9f, kBeforeEdge = 0.95f;
+/// The share of a disc's area of each place that is cut off: at most half of it is, as its centre counts too.
+constexpr float kShareOfPlace = 0.5f / kPlaces;
+constexpr size_t kSidesATask = 4096;
+
+}  // namespace
+
+Surfaces::Surfaces(std::unique_ptr<tracing::SurfelTracer> tracer)
+    : tracer_(std::move(tracer)), surfels_(tracer_->surfels()), is_cut_(2 * surfels_.size(), false) {
+    struct Found {
+        std::vector<CutOffPart> parts;
+        std::vector<float> shares;
+    };
+    const size_t sides = 2 * surfels_.size();
+    std::vector<Found> found((sides + kSidesATask - 1) / kSidesATask);
+    parallel_ranges(found.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t task = begin; task < end; ++task)
+            for (size_t side = task * kSidesATask; side < std::min(sides, (task + 1) * kSidesATask); ++side) {
+                float share = 0;
+                const std::vector<CutOffPart> own = find_parts(static_cast<Side>(side), share);
+                found[task].parts.insert(found[task].parts.end(), own.begin(), own.end());
+                found[task].shares.insert(found[task].shares.end(), own.size(), share);
+            }
+    });
+    for (const Found& some : found) {
+        parts_.insert(parts_.end(), some.parts.begin(), some.parts.end());
+        shares_.insert(shares_.end(), some.shares.begin(), some.shares.end());
+    }
+    for (const CutOffPart& part : parts_) {
+        is_cut_[part.side] = true;
+        Surfel surfel = tracer_->surfels()[part.side / 2];
+        surfel.position = part.position;
+        surfel.normal = normal_of(tracer_->surfels(), part.side);
+        surfels_.push_back(surfel);
+    }
+}
+
+/// Returns a place a radius above one of a disc's side.
+glm::vec3 Surfaces::above(Side side, const glm::vec3& place) const {
+    return tracing::offset_origin(place, normal_of(surfels_, side), surfels_[side / 2].radius);
+}
+
+/// Finds the parts of a side; sets the share of the disc's area that each of them has.
+std::vector<CutOffPart> Surfaces::find_parts(Side side, float& share) const {
+    const Surfel& disc = surfels_[side / 2];
+    glm::vec3 tangent, bitangent;
+    tracing::frame_of(disc.normal, tangent, bitangent);
+    std::array<glm::vec3, kPlaces> places, above_places;
+    for (size_t i = 0; i < kPlaces; ++i) {
+        const float angle = static_cast<float>(2 * M_PI / kPlaces) * static_cast<float>(i);
+        glm::vec3 offset = kNearRim * disc.radius * (std::cos(angle) * tangent + std::sin(angle) * bitangent);
+        const float beyond = glm::dot(disc.edge, offset);
+        if (beyond > kBeforeEdge) offset *= kBeforeEdge / beyond;
+        places[i] = disc.position + offset;
+        above_places[i] = above(side, places[i]);
+    }
+    // Most discs are whole, which three rays across show.
+    bool is_whole = true;
+    for (size_t i = 0; i < kPlaces / 2 && is_whole; ++i)
+        is_whole = !tracer_->occluded(above_places[i], above_places[i + kPlaces / 2]);
+    std::vector<CutOffPart> parts;
+    if (is_whole) return parts;
+    const glm::vec3 centre = above(side, disc.position);
+    float cut_off = 0;
+    for (size_t i = 0; i < kPlaces; ++i) {
+        if (!tracer_->occluded(centre, above_places[i])) continue;
+        ++cut_off;
+        if (std::ranges::none_of(parts, [&](const CutOffPart& part) {
+                return !tracer_->occluded(above(side, part.position), above_places[i]);
+            }))
+            parts.push_back({side, places[i]});
+    }
+    if (!parts.empty()) share = kShareOfPlace * cut_off / static_cast<float>(parts.size());
+    return parts;
+}
+
+std::span<const CutOffPart> Surfaces::parts_of(Side side) const {
+    if (is_part(side) || !is_cut_[side]) return {};
+    const auto own = std::ranges::equal_range(parts_, side, {}, &CutOffPart::side);
+    return {own.begin(), own.end()};
+}
+
+float Surfaces::area_of(Side side) const {
+    const float area = std::max(surfels_[side / 2].area, 0.0f);
+    if (is_part(side)) return shares_[side / 2 - discs()] * area;
+    float share = 1;
+    for (const CutOffPart& part : parts_of(side)) share -= shares_[side_of_part(part) / 2 - discs()];
+    return share * area;
+}
+
+Side Surfaces::side_of(const tracing::SurfelTracer::Hit& hit, const glm::vec3& place) const {
+    const Side side = 2 * hit.surfel + (hit.back ? 1u : 0u);
+    if (!is_cut_[side]) return side;
+    if (!tracer_->occluded(above(side, surfels_[hit.surfel].position), above(side, place))) return side;
+    const auto nearest = std::ranges::min_element(
+        parts_of(side), {}, [&](const CutOffPart& part) { return glm::distance(part.position, place); });
+    return side_of_part(*nearest);
+}
+
+bool Surfaces::see_each_other(Side one, Side other) const {
+    return !tracer_->occluded(above(one, surfels_[one / 2].position),
+                              above(other, surfels_[other / 2].position));
+}
+
+}  // namespace lucarne::gi::paths

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/engines/paths/sides.h"
+#include "gi/tracing/surfel_tracer.h"
+
+namespace lucarne::gi::paths {
+
+/// A part of one side of a disc that something cuts off from its centre. Discs stick out through the surfaces
+/// at which theirs ends: the rim of one that is lit from outside is seen in a dark room. Light meets that
+/// part as if it were a surface of its own.
+struct CutOffPart {
+    Side side = kNone;         ///< of the disc
+    glm::vec3 position{0.0f};  ///< a place on the part
+    bool operator==(const CutOffPart&) const = default;
+};
+
+/// The sides that light paths meet: those of discs, and after them the parts that are cut off from these. A
+/// part has one side, the front of a surfel of its own. Thread-safe once made.
+class Surfaces {
+ public:
+    explicit Surfaces(std::unique_ptr<tracing::SurfelTracer> tracer);
+
+    const tracing::SurfelTracer& tracer() const { return *tracer_; }
+    /// The tracer's surfels and, after them, one for each part: its disc, moved to a place on the part. Areas
+    /// are those of whole discs; see area_of().
+    std::span<const Surfel> surfels() const { return surfels_; }
+    /// The parts, in the order of the sides to which they belong.
+    std::span<const CutOffPart> parts() const { return parts_; }
+    size_t discs() const { return tracer_->surfels().size(); }
+    bool is_part(Side side) const { return side / 2 >= discs(); }
+    /// The back of a part does not exist.
+    bool exists(Side side) const { return side % 2 == 0 || !is_part(side); }
+    /// The parts of a disc's side.
+    std::span<const CutOffPart> parts_of(Side side) const;
+    Side side_of_part(const CutOffPart& part) const {
+        return static_cast<Side>(2 * (discs() + static_cast<size_t>(&part - parts_.data())));
+    }
+    /// Returns a side's share of the surface, m^2. Those of a disc's side and of its parts add up to the
+    /// disc's.
+    float area_of(Side side) const;
+    /// Returns the side that a ray meets at `place`.
+    Side side_of(const tracing::SurfelTracer::Hit& hit, const glm::vec3& place) const;
+    /// Whether nothing is between two sides, each seen from a radius above it.
+    bool see_each_other(Side one, Side other) const;
+
+ private:
+    std::vector<CutOffPart> find_parts(Side side, float& share) const;
+    glm::vec3 above(Side side, const glm::vec3& place) const;
+
+    std::unique_ptr<tracing::SurfelTracer> tracer_;
+    std::vector<Surfel> surfels_;
+    std::vector<CutOffPart> parts_;
+    std::vector<float> shares_;  ///< of each part, of its disc's area
+    std::vector<bool> is_cut_;   ///< of each side of a disc: whether it has parts
+};
+
+}  // namespace lucarne::gi::paths
