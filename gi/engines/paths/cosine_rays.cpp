@@ -66,4 +66,16 @@ float trace_rays(const Surfaces& surfaces, const RayStart& start, uint64_t seed,
     return static_cast<float>(count / std::max(nearness, 1e-12));
 }
 
+bool are_shorter(const Surfaces& surfaces, const RayStart& start, uint64_t seed, uint64_t stream,
+                 uint32_t count, float length) {
+    const glm::vec3 origin = tracing::offset_origin(start.position, start.normal, start.radius);
+    double nearness = 0;
+    for (uint32_t i = 0; i < count && !(nearness * length > count); ++i) {
+        const auto hit =
+            surfaces.tracer().first_hit(origin, cosine_direction(start.normal, even_point(i, seed, stream)));
+        if (hit) nearness += 1 / std::max<double>(hit->distance, 1e-6);
+    }
+    return nearness * length > count;
+}
+
 }  // namespace lucarne::gi::paths

@@ -44,4 +44,9 @@ RayHit follow(const Surfaces& surfaces, const RayStart& start, const glm::vec3& 
 float trace_rays(const Surfaces& surfaces, const RayStart& start, uint64_t seed, uint64_t stream,
                  std::span<RayHit> hits);
 
+/// Returns whether the harmonic mean length of so many even rays of a point is below `length`, m. Traces no
+/// more of them than it takes to know.
+bool are_shorter(const Surfaces& surfaces, const RayStart& start, uint64_t seed, uint64_t stream,
+                 uint32_t count, float length);
+
 }  // namespace lucarne::gi::paths

@@ -1,7 +1,6 @@
 #include "gi/engines/paths/gathering_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -23,7 +22,7 @@ constexpr double kMoreTests = 1.1;
 /// Places are narrow where the harmonic mean length of so many rays is below so many radii of the surfel:
 /// under the rims of discs that stick out over them, for example, whose light is not that of the places
 /// about.
-constexpr size_t kRaysOfTest = 16;
+constexpr uint32_t kRaysOfTest = 16;
 constexpr float kNarrow = 2;
 constexpr size_t kTestsAPiece = 1024, kTracedAPiece = 8, kNormalsAPiece = 16384;
 
@@ -92,8 +91,8 @@ bool PointChooser::is_covered(const glm::vec3& position, const glm::vec3& normal
 
 bool PointChooser::is_narrow(Side side, const glm::vec3& normal) const {
     const Surfel& s = surfaces_.surfels()[side / 2];
-    std::array<RayHit, kRaysOfTest> hits;
-    return trace_rays(surfaces_, {s.position, normal, s.radius}, seed_, side, hits) < kNarrow * s.radius;
+    return are_shorter(surfaces_, {s.position, normal, s.radius}, seed_, side, kRaysOfTest,
+                       kNarrow * s.radius);
 }
 
 bool PointChooser::restore(State state) {

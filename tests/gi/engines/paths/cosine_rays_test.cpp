@@ -1,5 +1,6 @@
 #include "gi/engines/paths/cosine_rays.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -83,6 +84,23 @@ TEST(CosineRays, FindTheFormFactorOfACubesFaces) {
     // Siegel & Howell: .199825 for opposite faces of a cube, so 1 - .199825 for the walls.
     EXPECT_NEAR(static_cast<double>(ceiling) / static_cast<double>(all), .199825, .002);
     EXPECT_NEAR(static_cast<double>(walls) / static_cast<double>(all), 1 - .199825, .002);
+}
+
+TEST(CosineRays, TellWhichAreShorterAsTheirMeanLengthDoes) {
+    const Surfaces surfaces = surfaces_of(closed_box(1, 20, glm::vec3(.5f)));
+    size_t shorter = 0, tested = 0;
+    for (Side side = 0; side < 2 * surfaces.discs(); side += 7) {
+        const RayStart start = start_at(surfaces.surfels(), side);
+        std::array<RayHit, 16> hits;
+        const float mean = trace_rays(surfaces, start, 1, side, hits);
+        for (const float length : {.05f, .3f, .45f, .6f, 3.0f}) {
+            EXPECT_EQ(are_shorter(surfaces, start, 1, side, 16, length), mean < length) << mean;
+            shorter += mean < length;
+            ++tested;
+        }
+    }
+    EXPECT_GT(shorter, tested / 5);
+    EXPECT_LT(shorter, tested * 4 / 5);
 }
 
 }  // namespace
