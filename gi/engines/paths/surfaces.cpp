@@ -94,8 +94,9 @@ std::vector<CutOffPart> Surfaces::find_parts(Side side, float& share) const {
 
 std::span<const CutOffPart> Surfaces::parts_of(Side side) const {
     if (is_part(side) || !is_cut_[side]) return {};
-    const auto own = std::ranges::equal_range(parts_, side, {}, &CutOffPart::side);
-    return {own.begin(), own.end()};
+    const auto first = std::ranges::lower_bound(parts_, side, {}, &CutOffPart::side);
+    const auto last = std::ranges::upper_bound(parts_, side, {}, &CutOffPart::side);
+    return {first, last};
 }
 
 float Surfaces::area_of(Side side) const {
