@@ -55,7 +55,7 @@ class LobeGather {
         reflectances_ = reflectances;
         bright_ = nullptr;
         gatherer_.set_no_bright();
-        LUCARNE_TRY(gatherer_.set_openings(device_, nullptr));
+        gatherer_.set_no_openings();
         if (rare.find_bright) {
             LUCARNE_ASSIGN(bright_, timed(frame_, "bright light", [&] {
                                return rare.find_bright(pilots(BrightLight::kPilots), seed_);

@@ -65,9 +65,11 @@ class Gatherer {
     void set_no_bright() { reach2_ = kNoReach; }
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.
     Result<void> set_sky(ClDevice& device, const GatherSky& sky);
-    /// Has each point look for the sky through openings with so many rays of its own as well, until the next
-    /// call or another tree comes. The openings must live until then. Null: without. Errors: device memory.
-    Result<void> set_openings(ClDevice& device, const SkyOpenings* openings, uint32_t rays = 0);
+    /// Has each point look for the sky through openings with so many rays of its own as well, until
+    /// set_no_openings(), the next call or another tree comes. The openings must live until then. Null:
+    /// without. Errors: device memory.
+    Result<void> set_openings(ClDevice& device, const SkyOpenings* openings, uint32_t rays);
+    void set_no_openings() { openings_ = nullptr; }
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
     /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
     /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`

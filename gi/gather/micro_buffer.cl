@@ -154,15 +154,8 @@ float3 direction_of(const float* rays, int pixel) {
 typedef struct {
     float8 dx, dy, dz;                 // middles, from the start of the rays
     float8 nx, ny, nz, plane;          // their planes: n . p = plane
-    int8 cloud;
     int8 left, right, upper, lower;    // the pixels that they may cover
 } Children;
-
-int largest_of(int8 v) {
-    int4 four = max(v.lo, v.hi);
-    int2 two = max(four.lo, four.hi);
-    return max(two.x, two.y);
-}
 
 // Lets a pixel show a child that its ray meets at the distance t, at a place relative to the child's middle, if the
 // child hides that place and nothing nearer.
@@ -292,7 +285,6 @@ void draw(global const WideNode* nodes, const float* rays, float3 start, float3 
         children.ny = select(ny, dy * nearer, cloud);
         children.nz = select(nz, dz * nearer, cloud);
         children.plane = select(plane, distance2 * nearer, cloud);
-        children.cloud = cloud;
         children.left = convert_int8(fmax(ceil(px - wide), 0.0f));
         children.right = convert_int8(fmin(floor(px + wide), GRID - 1.0f));
         children.upper = convert_int8(fmax(ceil(py - tall), 0.0f));

@@ -41,7 +41,7 @@ Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
         sky_ = gather_sky(frame.environment);
         bright_ = SkyDirections(sky_.bright);
         LUCARNE_TRY(gatherer_.set_sky(*opencl_, sky_));
-        LUCARNE_TRY(drop_openings());
+        drop_openings();
         sky_of_ = scene_.environment;
     }
     return upload_materials(frame.gl.device, frame.materials, materials_);
@@ -50,6 +50,7 @@ Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
 void TreeLighting::begin(Frame& frame) {
     views_ = light_views(frame, bright_, frame.index);
     light_gbuffers_.begin(frame.gl.device, views_, views_.size());
+    gatherer_.set_no_openings();
 }
 
 Result<void> TreeLighting::make_tree(Frame& frame) {
@@ -59,7 +60,7 @@ Result<void> TreeLighting::make_tree(Frame& frame) {
     light_of_.reset();
     photons_.reset();
     bright_light_ = {};
-    LUCARNE_TRY(drop_openings());
+    drop_openings();
     traced_.reset();
     LUCARNE_TRY(gatherer_.set_tree(*opencl_, nullptr));  // the old one needs no memory beside the new one
     LUCARNE_TRY(lit_.set_surfels(frame));
@@ -156,19 +157,18 @@ Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<con
 Result<const SkyOpenings*> TreeLighting::find_openings(Frame& frame, std::span<const GatherPoint> pilots,
                                                        uint64_t seed) {
     LUCARNE_TRY(trace_tree(frame));
-    const CameraView view = middle_view(frame.camera);
+    const std::pair view(middle_view(frame.camera), scene_.settings);
     if (openings_of_ == view) return &openings_;
-    LUCARNE_TRY(drop_openings());
+    drop_openings();
     openings_ = SkyOpenings::find(*traced_->tracer, sky_, pilots, seed, frame.stop);
     if (!frame.stopped()) openings_of_ = view;
     return &openings_;
 }
 
-Result<void> TreeLighting::drop_openings() {
+void TreeLighting::drop_openings() {
     openings_of_.reset();
-    LUCARNE_TRY(gatherer_.set_openings(*opencl_, nullptr));
+    gatherer_.set_no_openings();
     openings_ = {};
-    return {};
 }
 
 Result<void> TreeLighting::trace_tree(Frame& frame) {

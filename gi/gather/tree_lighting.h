@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gi/changes.h"
@@ -40,9 +41,9 @@ class TreeLighting {
     Result<void> make_light(Frame& frame, const Radiosity::Settings& settings,
                             LightPoints points = LightPoints::radiosity);
     /// Finds the light that is bright for some points, which gather `what` first, and has the gatherer leave
-    /// it out (BrightLight::find()): of what surfels send out by make_light(), or after set_irradiance(), in
-    /// which it has to be, of their own light. Returns none if there is none. Errors: Embree's, a device
-    /// failed.
+    /// it out (BrightLight::find()). Bright light is taken from that of make_light(); after
+    /// set_irradiance(own = true), from the surfels' own light. Returns none if there is none. Errors:
+    /// Embree's, a device failed.
     Result<const BrightLight*> find_bright(Frame& frame, std::span<const GatherPoint> pilots, Gathered what,
                                            uint64_t seed);
     /// Finds the openings to the sky that some points see (SkyOpenings::find()), for the gatherer; empty if
@@ -80,7 +81,7 @@ class TreeLighting {
                           std::vector<SideLight>& light);
     /// Makes the tree and traced_. Errors: Embree's, a device failed.
     Result<void> trace_tree(Frame& frame);
-    Result<void> drop_openings();
+    void drop_openings();
     /// Gives the gatherer this light.
     Result<void> set_slots(std::span<const SideLight> slots, const SideLobes& lobes);
 
@@ -101,7 +102,7 @@ class TreeLighting {
     std::optional<Photons> photons_;    ///< likewise
     BrightLight bright_light_;          ///< for the last picture
     SkyOpenings openings_;              ///< for the frames of openings_of_
-    std::optional<CameraView> openings_of_;
+    std::optional<std::pair<CameraView, uint64_t>> openings_of_;  ///< view, revision of the settings
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
     std::vector<SideLight> slots_;  ///< the light of make_light()

@@ -23,7 +23,7 @@ Result<ClBuffer> ClBuffer::create(ClContext& context, size_t bytes, const std::b
     cl_int problem = CL_SUCCESS;
     const cl_mem memory = clCreateBuffer(
         context.context(), lent ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR : CL_MEM_READ_WRITE, bytes,
-        const_cast<std::byte*>(lent), &problem);  // OpenCL has no other word for memory that is only read
+        const_cast<std::byte*>(lent), &problem);  // clCreateBuffer takes no pointer to const
     if (problem != CL_SUCCESS) {
         context.memory().give_back(bytes);
         LUCARNE_TRY(context.check_loss(problem));

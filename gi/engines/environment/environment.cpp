@@ -264,7 +264,7 @@ Result<std::vector<LightByNormal>> EnvironmentEngine::shade(const Frame& frame, 
     Gatherer& gatherer = lighting_.gatherer();
     LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, SkyOpenings::kRays));
     LUCARNE_ASSIGN(auto light, gatherer.shade(lighting_.opencl(), what, buffers, frame.stop));
-    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), nullptr));
+    gatherer.set_no_openings();
     if (!bright_ || what == Gathered::sky) return light;
     const std::span<const GatherPoint> points = buffers.points();
     parallel_ranges(points.size(), kPointsATask, [&](size_t first, size_t last) {

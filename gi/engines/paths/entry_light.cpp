@@ -68,7 +68,7 @@ Result<std::vector<glm::vec3>> EntryLight::compute(Frame& frame, std::span<const
     return irradiance;
 }
 
-/// Adds the light of a view's lamp by a ray from each entry point that faces it.
+/// Adds the light of a view's lamp by a ray from each entry point that faces it and is in the view.
 void EntryLight::trace(Frame& frame, const LightView& view, const tracing::SurfelTracer& tracer,
                        std::span<glm::vec3> irradiance) const {
     const Light& light = view.light;
@@ -76,6 +76,7 @@ void EntryLight::trace(Frame& frame, const LightView& view, const tracing::Surfe
         for (size_t i = begin; i < end && !frame.stopped(); ++i) {
             const Entry& entry = bake_->entries[i];
             const glm::vec3 at = entry.position + frame.bake_offset;
+            if (light_face(light, at - glm::vec3(light.position)) != view.face) continue;
             glm::vec3 in;
             const glm::vec3 arriving = light_irradiance(light, at, entry.normal, in);
             if (arriving == glm::vec3(0.0f)) continue;
@@ -100,23 +101,25 @@ Result<std::vector<glm::vec3>> EntryLight::irradiance(Frame& frame, std::span<co
     while (!views.empty() && !sum.empty()) {
         const auto own = views.first(keeps ? views_of_one(views) : views.size());
         const Light& light = own[0].light;
-        const uint64_t cut = own[0].cut->fingerprint();
+        const bool is_traced = tracer != nullptr;
+        const uint64_t cut = (is_traced ? frame.gl.cuts.light : own[0].cut)->fingerprint();
         const auto found = std::ranges::find_if(kept_, [&](const Kept& k) {
-            return keeps && k.light == light && (any_state || k.cut == cut) && (k.is_traced || !tracer);
+            if (!keeps || k.light != light) return false;
+            return any_state ? k.is_traced || !is_traced : k.cut == cut && k.is_traced == is_traced;
         });
         if (found != kept_.end()) {
             kept.push_back(*found);
         } else {
             ++computed_;
             std::vector<glm::vec3> irradiance;
-            if (tracer) {
+            if (is_traced) {
                 irradiance.assign(sum.size(), glm::vec3(0.0f));
                 for (const LightView& view : own) trace(frame, view, *tracer, irradiance);
             } else {
                 LUCARNE_ASSIGN(irradiance, compute(frame, own, gbuffers, any_state));
             }
             if (frame.stopped()) return sum;
-            kept.push_back({light, cut, tracer != nullptr, std::move(irradiance)});
+            kept.push_back({light, cut, is_traced, std::move(irradiance)});
         }
         for (size_t i = 0; i < sum.size(); ++i) sum[i] += kept.back().irradiance[i];
         views = views.subspan(own.size());

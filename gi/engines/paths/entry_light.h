@@ -35,7 +35,7 @@ class EntryLight {
     /// What a lamp sends to the entry points.
     struct Kept {
         Light light;
-        uint64_t cut = 0;        ///< DeviceCut::fingerprint()
+        uint64_t cut = 0;        ///< DeviceCut::fingerprint() of what may hide the lamp
         bool is_traced = false;  ///< shadows by rays, not by maps
         std::vector<glm::vec3> irradiance;
     };

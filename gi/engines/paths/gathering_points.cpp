@@ -101,8 +101,7 @@ bool PointChooser::restore(State state) {
         !(state.spacing.most >= state_.spacing.most) || !std::isfinite(state.spacing.most))
         return false;
     for (const GatheringPoint& p : state.points)
-        if (p.side >= order_.size() || !(p.reach > 0) || !(p.reach <= state.spacing.most) ||
-            !p.walls.are_finite())
+        if (p.side >= order_.size() || !(p.reach > 0) || !(p.reach <= state.spacing.most) || !p.is_finite())
             return false;
     const auto is_side = [&](Side side) {
         return side / 2 < surfaces_.surfels().size() && surfaces_.exists(side);

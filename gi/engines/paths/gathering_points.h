@@ -29,6 +29,11 @@ struct GatheringPoint {
     Side side = kNone;
     Walls walls;  ///< up to the distance at which pixels use its light
     bool operator==(const GatheringPoint&) const = default;
+    /// Whether its numbers make sense, as those of a file may not.
+    bool is_finite() const {
+        return radius > 0 && std::isfinite(reach + radius + glm::dot(position, position)) &&
+               std::isfinite(glm::dot(normal, normal)) && walls.are_finite();
+    }
     /// Whether walls hide a place from it.
     bool is_hidden(const glm::vec3& place) const { return walls.hide(place - position, normal); }
 };

@@ -16,8 +16,7 @@ namespace lucarne::gi::paths {
 /// the cells of an adaptive octree. A group is what one cell holds of one surface: sides that face the same
 /// of six directions, lie in one plane (sheets that are farther apart than their discs are wide are
 /// separate), see each other and see the same air. So light does not pass from one side of a wall to the
-/// other, and sealed rooms stay black. Groups of larger cells join
-/// those of smaller ones.
+/// other. Groups of larger cells join those of smaller ones.
 struct Groups {
     uint32_t leaves = 0;               ///< the first groups are those of the finest cells
     std::vector<uint32_t> leaf_of;     ///< of each side

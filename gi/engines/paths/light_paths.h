@@ -23,9 +23,8 @@ struct EntryPoints {
 };
 
 /// Chooses about `count` entry points, in proportion to area, but at least one in each leaf that `used`
-/// names, and none in others. They are sides that `hits` met, each as often as it was met: what of a leaf a
-/// room sees may be darker than the rest, as in the reveal of a window. In leaves that none met they are
-/// spread by area.
+/// names, and none in others. They are taken evenly from the hits in the leaf: what of it a room sees may be
+/// darker than the rest, as in the reveal of a window. In leaves that no hit is in they are spread by area.
 EntryPoints choose_entries(const Surfaces& surfaces, const GroupBuilder& builder,
                            std::span<const float> areas, std::span<const uint8_t> used,
                            std::span<const RayHit> hits, uint64_t count);

@@ -108,10 +108,7 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
         return damaged("first children");
     groups.leaves = static_cast<uint32_t>(groups.parent.size() - (groups.first.size() - 1));
     if (!is_sound(groups)) return damaged("children");
-    const auto is_point = [](const GatheringPoint& p) {
-        return p.reach > 0 && std::isfinite(p.reach + p.radius + glm::dot(p.position, p.position)) &&
-               std::isfinite(glm::dot(p.normal, p.normal)) && p.walls.are_finite();
-    };
+    const auto is_point = [](const GatheringPoint& p) { return p.reach > 0 && p.is_finite(); };
     if (!std::ranges::all_of(paths.points, is_point)) return damaged("points");
     if (paths.rays.size() != paths.points.size() * rays_a_point ||
         !all_below(paths.rays, groups.count(), true))

@@ -238,6 +238,17 @@ TEST_F(SkyOpeningsInEngines, OpeningsServeOneViewUnderOneSky) {
         options.index = 0;
         EXPECT_NEAR(mean_luminance(next) / mean_luminance(alone), 1, 0.1) << name;
     }
+    // Places between which light is exchanged do not look through the openings of an earlier picture.
+    options.settings.set(kOnlyBounce, -1);
+    options.settings.set(kBounces, 2);
+    options.settings.set(kLightPoints, LightPoints::radiosity);
+    for (const std::string_view name : {"micro", "environment"}) {
+        const auto engine = *make_engine(name), fresh = *make_engine(name);
+        draw(*engine, other, dim);
+        options.index = 1;
+        EXPECT_EQ(draw(*engine, view, dim), draw(*fresh, view, dim)) << name << " after another view";
+        options.index = 0;
+    }
 }
 
 }  // namespace

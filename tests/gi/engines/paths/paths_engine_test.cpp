@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
@@ -86,6 +87,42 @@ TEST_F(PathsEngine, ManyLampsGiveThePictureOfAFreshPreparation) {
     draw();
     options_.lights[3] = lamp(.45f);
     EXPECT_EQ(draw().radiance, draw_anew().radiance);
+}
+
+// A point light has six views and a rectangle four for each sample: each view sees its part of the scene.
+TEST_F(PathsEngine, LampsOfAllKindsBounceAsMuchByRaysAsByMaps) {
+    options_.settings.set(kOnlyBounce, 1);
+    const Light lamps[] = {scenes::point({1.2f, .9f, 1.4f}, 1), lamp(1.2f),
+                           scenes::rectangle_light({1, 1, 1.6f}, {.2f, 0, 0}, .2f, {0, 0, -1}, 5)};
+    for (const Light& light : lamps) {
+        options_.lights = {light};
+        options_.settings.set(kShadows, Shadows::maps);
+        const double by_maps = mean_luminance(draw().radiance);
+        options_.settings.set(kShadows, Shadows::rays);
+        const double by_rays = mean_luminance(draw().radiance);
+        EXPECT_GT(by_maps, 0);
+        EXPECT_NEAR(by_rays / by_maps, 1, 0.05) << "kind " << light.kind;
+    }
+}
+
+TEST_F(PathsEngine, OtherShadowsGiveThePictureOfAFreshEngine) {
+    auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
+    scenes::add_rectangle(surfels, {.8f, .6f, 1}, .5f * kX, .5f * kY, 10, glm::vec3(.6f));
+    cloud_ = std::make_unique<SurfelCloud>(std::move(surfels));
+    options_.bake = nullptr;
+    options_.bake = draw().bake;
+    const auto loaded = load_cloud(*device, *cloud_);
+    ASSERT_TRUE(loaded) << loaded.error().line();
+    const auto draw_by = [&](Engine& engine, Shadows shadows) {
+        options_.settings.set(kShadows, shadows);
+        const auto lit = draw_frame(*device, engine, (*loaded)->pool, (*loaded)->cut, camera_,
+                                    {glm::vec3(0.0f), glm::vec3(2.0f)}, options_);
+        EXPECT_TRUE(lit) << lit.error().line();
+        return lit ? lit->radiance : std::vector<glm::vec4>{};
+    };
+    for (const Shadows shadows : {Shadows::rays, Shadows::maps, Shadows::rays})
+        EXPECT_EQ(draw_by(*engine_, shadows), draw_by(**make_engine("paths"), shadows));
+    EXPECT_NE(draw_by(*engine_, Shadows::maps), draw_by(*engine_, Shadows::rays));
 }
 
 TEST_F(PathsEngine, EditedMaterialsGiveThePictureOfAFreshPreparation) {
