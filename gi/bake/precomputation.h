@@ -26,6 +26,8 @@ struct BakeInput {
     std::vector<Light> lights;  ///< in the cut's local frame
     std::shared_ptr<const Environment> environment;
     EngineSettings settings;
+    /// Whether pictures show what is usable meanwhile. The result does not depend on it.
+    bool is_shown = true;
 };
 
 /// What an engine reads of a precomputation, finished or not. It never changes; engines know their own.

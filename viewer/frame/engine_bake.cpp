@@ -55,6 +55,7 @@ void EngineBake::update(const BakeSubject& subject) {
         order.input.materials.push_back(gi::device_material(material, subject.scene.albedo.scale));
     order.input.environment = subject.scene.environment;
     order.input.settings = subject.settings;
+    order.input.is_shown = subject.is_shown;
     if (const auto identity = source.identity()) {
         order.input.source = identity->content;
         order.file = gi::bake_place(identity->file, subject.engine.name);

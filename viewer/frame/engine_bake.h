@@ -24,7 +24,8 @@ struct BakeSubject {
     const SurfelStream& surfels;
     const gi::Scene& scene;
     const gi::EngineSettings& settings;
-    uint64_t points = 0;  ///< of the cut
+    uint64_t points = 0;   ///< of the cut
+    bool is_shown = true;  ///< while it is made; a precomputation that runs already goes on as it does
 };
 
 /// Runs the precomputation of the engine that draws pictures, and starts it again when an input changes.

@@ -70,7 +70,7 @@ struct Pipeline::State {
     Result<void> take_source(std::shared_ptr<const octree::NodeSource> from);
     gi::EngineNeeds needs(const FrameRequest& request) const;
     void choose_cuts(const FrameRequest& request);
-    void update_bake();
+    void update_bake(bool is_shown);
     Result<void> take_bake(const FrameRequest& request);
     void look_ahead(const FrameRequest& request);
     Result<void> stream(const FrameRequest& request);
@@ -162,14 +162,14 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
     cuts.changed();
 }
 
-void Pipeline::State::update_bake() {
-    bake.update({engine->info(), source, bounds, surfels, scene, settings, budgets.light});
+void Pipeline::State::update_bake(bool is_shown) {
+    bake.update({engine->info(), source, bounds, surfels, scene, settings, budgets.light, is_shown});
 }
 
 /// Takes what the engine has computed in advance so far; with `wait` all of it. Without `wait` a failure is a
 /// warning, and the engine draws without it. So is one to keep it.
 Result<void> Pipeline::State::take_bake(const FrameRequest& request) {
-    update_bake();
+    update_bake(!request.wait);
     if (!bake.running()) {
         baked = {};
         return {};
@@ -477,7 +477,7 @@ Result<std::filesystem::path> Pipeline::prepare(Progress* progress) {
     State& state = *state_;
     if (!state.engine) LUCARNE_TRY(set_engine(gi::default_engine().name));
     LUCARNE_TRY(state.surfels.renew(state.scene));
-    state.update_bake();
+    state.update_bake(false);
     LUCARNE_TRY(state.bake.wait(nullptr, progress));
     const gi::BakeJob::Status done = state.bake.status();
     LUCARNE_TRY(done.keeping);

@@ -39,7 +39,8 @@ const CutOffPart* find_part(const LightPaths& paths, size_t number) {
     return number < paths.parts.size() ? &paths.parts[number] : nullptr;
 }
 
-/// Makes coarse paths first, which are usable after a moment, then those that were asked for.
+/// Makes coarse paths first, which are usable after a moment, if anything shows them; then those that were
+/// asked for.
 class PathsPrecomputation final : public Precomputation {
  public:
     Result<void> restore(const BakeInput& input, const BakeSections& sections) override {
@@ -57,13 +58,19 @@ class PathsPrecomputation final : public Precomputation {
         return {};
     }
 
-    std::vector<Step<const BakeInput>> steps(const BakeInput&) override {
+    std::vector<Step<const BakeInput>> steps(const BakeInput& from) override {
         std::vector<Step<const BakeInput>> steps;
         if (!is_restored_) {
             steps.push_back({"surfels", [this](const BakeInput& input) -> Result<StepResult> {
                                  LUCARNE_TRY(start(input));
+                                 if (input.is_shown)
+                                     start_coarse(input);
+                                 else
+                                     start_whole(input);
                                  return StepResult::done;
                              }});
+        }
+        if (!is_restored_ && from.is_shown) {
             add_steps(steps);
             steps.push_back({"snapshot", [this](const BakeInput& input) -> Result<StepResult> {
                                  LUCARNE_TRY(publish(input, builder_->take()));
@@ -114,12 +121,14 @@ class PathsPrecomputation final : public Precomputation {
         LUCARNE_ASSIGN(auto tracer, tracing::SurfelTracer::create(input.cut.surfels));
         surfaces_ = std::make_unique<Surfaces>(std::move(tracer));
         spacing_ = spacing_of(input, surfaces_->tracer().surfels());
+        return {};
+    }
+    void start_coarse(const BakeInput& input) {
         builder_.emplace(*surfaces_,
                          PathPlan{{kCoarserSpacing * spacing_.least, kCoarserSpacing * spacing_.most},
                                   kCoarseRays,
                                   kCoarseEntries,
                                   input.settings[kSeed]});
-        return {};
     }
     void start_whole(const BakeInput& input) {
         is_whole_ = true;

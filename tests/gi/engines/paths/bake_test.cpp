@@ -62,6 +62,18 @@ TEST(PathsBake, CoarsePathsAreUsableBeforeAllAreMade) {
     EXPECT_EQ(work->share(), 1);
 }
 
+TEST(PathsBake, NothingCoarseIsMadeThatNobodySees) {
+    BakeInput input = small_box();
+    const auto shown = kPathsPrecomputes.make(), unshown = kPathsPrecomputes.make();
+    finish(*shown, input);
+    input.is_shown = false;
+    StepRunner<const BakeInput> runner;
+    runner.start(unshown->steps(input));
+    while (!unshown->snapshot() && runner.running()) ASSERT_TRUE(runner.run(input, StepBudget::timed(0)));
+    EXPECT_EQ(unshown->share(), 1);
+    EXPECT_EQ(unshown->save(), shown->save());
+}
+
 TEST(PathsBake, ChangedColoursAndMaterialsNeedNoRay) {
     BakeInput input = small_box();
     const auto old = kPathsPrecomputes.make();
