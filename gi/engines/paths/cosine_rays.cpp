@@ -20,9 +20,9 @@ constexpr float kLeastCosine = 0.1f;
 
 }  // namespace
 
-RayStart start_at(std::span<const Surfel> surfels, Side side) {
-    const Surfel& s = surfels[side / 2];
-    return {s.position, normal_of(surfels, side), s.radius};
+RayStart start_at(const SideSurfels& surfels, Side side) {
+    const Surfel s = surfels[side / 2];
+    return {s.position, side % 2 ? -s.normal : s.normal, s.radius};
 }
 
 glm::vec3 cosine_direction(const glm::vec3& normal, const glm::dvec2& square) {

@@ -16,7 +16,7 @@ struct RayStart {
     glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
     float radius = 0;
 };
-RayStart start_at(std::span<const Surfel> surfels, Side side);
+RayStart start_at(const SideSurfels& surfels, Side side);
 
 /// What a ray meets.
 struct RayHit {

@@ -90,7 +90,7 @@ bool PointChooser::is_covered(const glm::vec3& position, const glm::vec3& normal
 }
 
 bool PointChooser::is_narrow(Side side, const glm::vec3& normal) const {
-    const Surfel& s = surfaces_.surfels()[side / 2];
+    const Surfel& s = surfaces_.tracer().surfels()[side / 2];
     return are_shorter(surfaces_, {s.position, normal, s.radius}, seed_, side, kRaysOfTest,
                        kNarrow * s.radius);
 }
@@ -135,8 +135,8 @@ bool PointChooser::advance() {
         for (size_t i = begin; i < end; ++i) {
             const Side side = order_[first + i];
             normals[i] = side % 2 ? -normals_[side / 2] : normals_[side / 2];
-            covered[i] =
-                is_covered(surfaces_.surfels()[side / 2].position, normals[i]) || is_narrow(side, normals[i]);
+            covered[i] = is_covered(surfaces_.tracer().surfels()[side / 2].position, normals[i]) ||
+                         is_narrow(side, normals[i]);
         }
     });
     std::vector<size_t> passed;
@@ -149,7 +149,7 @@ bool PointChooser::advance() {
     parallel_ranges(passed.size(), kTracedAPiece, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const Side side = order_[first + passed[i]];
-            const Surfel& s = surfaces_.surfels()[side / 2];
+            const Surfel& s = surfaces_.tracer().surfels()[side / 2];
             const RayStart start{s.position, normals[passed[i]], s.radius};
             const float length =
                 trace_rays(surfaces_, start, seed_, side, std::span(hits).subspan(i * rays_, rays_));

@@ -47,11 +47,12 @@ uint32_t Groups::fitting(uint32_t leaf, float width) const {
 
 GroupBuilder::GroupBuilder(const Surfaces& surfaces, std::span<const RayHit> hits, float least_cell)
     : surfaces_(surfaces), surfels_(surfaces.surfels()), leaf_of_(2 * surfels_.size(), kNone) {
-    const std::span surfels = surfels_;
+    const SideSurfels& surfels = surfels_;
     glm::vec3 low(3e38f), high(-3e38f);
-    for (const Surfel& s : surfels) {
-        low = glm::min(low, s.position);
-        high = glm::max(high, s.position);
+    for (size_t i = 0; i < surfels.size(); ++i) {
+        const glm::vec3 position = surfels[i].position;
+        low = glm::min(low, position);
+        high = glm::max(high, position);
     }
     if (surfels.empty()) low = high = glm::vec3(0.0f);
     const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
@@ -144,7 +145,7 @@ void GroupBuilder::add_leaf(std::span<const Side> sides, uint32_t facing) {
     const auto number = static_cast<uint32_t>(facts_.size());
     Facts facts{.facing = facing};
     for (const Side side : sides) {
-        const Surfel& s = surfels_[side / 2];
+        const Surfel s = surfels_[side / 2];
         const float area = area_of(side), weight = std::max(area, kLeastWeight);
         add(facts, {weight * normal_of(surfels_, side), s.position, weight, area, s.radius,
                     start_at(surfels_, side)});

@@ -85,7 +85,7 @@ class GroupBuilder {
     static void add(Facts& sum, const Facts& more);
 
     const Surfaces& surfaces_;
-    std::span<const Surfel> surfels_;
+    SideSurfels surfels_;
     float edge_ = 0;                         ///< of the octree, m
     std::vector<uint32_t> order_;            ///< surfels along a curve through space
     std::vector<std::vector<Cell>> levels_;  ///< from the root

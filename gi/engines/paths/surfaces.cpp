@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -24,12 +25,12 @@ constexpr size_t kSidesATask = 4096;
 }  // namespace
 
 Surfaces::Surfaces(std::unique_ptr<tracing::SurfelTracer> tracer)
-    : tracer_(std::move(tracer)), surfels_(tracer_->surfels()), is_cut_(2 * surfels_.size(), false) {
+    : tracer_(std::move(tracer)), first_(2 * discs() + 1, 0), is_cut_(2 * discs(), false) {
     struct Found {
         std::vector<CutOffPart> parts;
         std::vector<float> shares;
     };
-    const size_t sides = 2 * surfels_.size();
+    const size_t sides = 2 * discs();
     std::vector<Found> found((sides + kSidesATask - 1) / kSidesATask);
     parallel_ranges(found.size(), 1, [&](size_t begin, size_t end) {
         for (size_t task = begin; task < end; ++task)
@@ -46,21 +47,20 @@ Surfaces::Surfaces(std::unique_ptr<tracing::SurfelTracer> tracer)
     }
     for (const CutOffPart& part : parts_) {
         is_cut_[part.side] = true;
-        Surfel surfel = tracer_->surfels()[part.side / 2];
-        surfel.position = part.position;
-        surfel.normal = normal_of(tracer_->surfels(), part.side);
-        surfels_.push_back(surfel);
+        ++first_[part.side + 1];
     }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
 }
 
-/// Returns a place a radius above one of a disc's side.
+/// Returns a place a radius above one of a disc's side, or of its parts.
 glm::vec3 Surfaces::above(Side side, const glm::vec3& place) const {
-    return tracing::offset_origin(place, normal_of(surfels_, side), surfels_[side / 2].radius);
+    const std::span discs(tracer_->surfels());
+    return tracing::offset_origin(place, normal_of(discs, side), discs[side / 2].radius);
 }
 
 /// Finds the parts of a side; sets the share of the disc's area that each of them has.
 std::vector<CutOffPart> Surfaces::find_parts(Side side, float& share) const {
-    const Surfel& disc = surfels_[side / 2];
+    const Surfel& disc = tracer_->surfels()[side / 2];
     glm::vec3 tangent, bitangent;
     tracing::frame_of(disc.normal, tangent, bitangent);
     std::array<glm::vec3, kPlaces> places, above_places;
@@ -94,31 +94,36 @@ std::vector<CutOffPart> Surfaces::find_parts(Side side, float& share) const {
 
 std::span<const CutOffPart> Surfaces::parts_of(Side side) const {
     if (is_part(side) || !is_cut_[side]) return {};
-    const auto first = std::ranges::lower_bound(parts_, side, {}, &CutOffPart::side);
-    const auto last = std::ranges::upper_bound(parts_, side, {}, &CutOffPart::side);
-    return {first, last};
+    return std::span(parts_).subspan(first_[side], first_[side + 1] - first_[side]);
 }
 
 float Surfaces::area_of(Side side) const {
-    const float area = std::max(surfels_[side / 2].area, 0.0f);
-    if (is_part(side)) return shares_[side / 2 - discs()] * area;
+    const size_t part = side / 2 - discs();
+    const Side of_disc = is_part(side) ? parts_[part].side : side;
+    const float area = std::max(tracer_->surfels()[of_disc / 2].area, 0.0f);
+    if (is_part(side)) return shares_[part] * area;
     float share = 1;
-    for (const CutOffPart& part : parts_of(side)) share -= shares_[side_of_part(part) / 2 - discs()];
+    for (uint32_t i = first_[side]; i < first_[side + 1]; ++i) share -= shares_[i];
     return share * area;
 }
 
 Side Surfaces::side_of(const tracing::SurfelTracer::Hit& hit, const glm::vec3& place) const {
     const Side side = 2 * hit.surfel + (hit.back ? 1u : 0u);
     if (!is_cut_[side]) return side;
-    if (!tracer_->occluded(above(side, surfels_[hit.surfel].position), above(side, place))) return side;
+    if (!tracer_->occluded(above(side, tracer_->surfels()[hit.surfel].position), above(side, place)))
+        return side;
     const auto nearest = std::ranges::min_element(
         parts_of(side), {}, [&](const CutOffPart& part) { return glm::distance(part.position, place); });
     return side_of_part(*nearest);
 }
 
 bool Surfaces::see_each_other(Side one, Side other) const {
-    return !tracer_->occluded(above(one, surfels_[one / 2].position),
-                              above(other, surfels_[other / 2].position));
+    const auto start = [&](Side side) {
+        const Surfel surfel = surfels()[side / 2];
+        return tracing::offset_origin(surfel.position, side % 2 ? -surfel.normal : surfel.normal,
+                                      surfel.radius);
+    };
+    return !tracer_->occluded(start(one), start(other));
 }
 
 }  // namespace lucarne::gi::paths

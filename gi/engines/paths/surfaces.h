@@ -22,6 +22,32 @@ struct CutOffPart {
     bool operator==(const CutOffPart&) const = default;
 };
 
+/// The surfels of discs and, after them, one for each part: its disc, moved to a place on the part, with the
+/// normal of its side. Those of parts are made when they are asked for: few ever are.
+class SideSurfels {
+ public:
+    SideSurfels(std::span<const Surfel> discs, std::span<const CutOffPart> parts)
+        : discs_(discs), parts_(parts) {}
+    size_t size() const { return discs_.size() + parts_.size(); }
+    bool empty() const { return size() == 0; }
+    Surfel operator[](size_t i) const {
+        if (i < discs_.size()) return discs_[i];
+        const CutOffPart& part = parts_[i - discs_.size()];
+        Surfel surfel = discs_[part.side / 2];
+        surfel.position = part.position;
+        surfel.normal = normal_of(discs_, part.side);
+        return surfel;
+    }
+
+ private:
+    std::span<const Surfel> discs_;
+    std::span<const CutOffPart> parts_;
+};
+inline glm::vec3 normal_of(const SideSurfels& surfels, Side side) {
+    const glm::vec3 normal = surfels[side / 2].normal;
+    return side % 2 ? -normal : normal;
+}
+
 /// The sides that light paths meet: those of discs, and after them the parts that are cut off from these. A
 /// part has one side, the front of a surfel of its own. Thread-safe once made.
 class Surfaces {
@@ -29,9 +55,8 @@ class Surfaces {
     explicit Surfaces(std::unique_ptr<tracing::SurfelTracer> tracer);
 
     const tracing::SurfelTracer& tracer() const { return *tracer_; }
-    /// The tracer's surfels and, after them, one for each part: its disc, moved to a place on the part. Areas
-    /// are those of whole discs; see area_of().
-    std::span<const Surfel> surfels() const { return surfels_; }
+    /// The surfels of sides. Areas are those of whole discs; see area_of().
+    SideSurfels surfels() const { return {tracer_->surfels(), parts_}; }
     /// The parts, in the order of the sides to which they belong.
     std::span<const CutOffPart> parts() const { return parts_; }
     size_t discs() const { return tracer_->surfels().size(); }
@@ -56,10 +81,10 @@ class Surfaces {
     glm::vec3 above(Side side, const glm::vec3& place) const;
 
     std::unique_ptr<tracing::SurfelTracer> tracer_;
-    std::vector<Surfel> surfels_;
     std::vector<CutOffPart> parts_;
-    std::vector<float> shares_;  ///< of each part, of its disc's area
-    std::vector<bool> is_cut_;   ///< of each side of a disc: whether it has parts
+    std::vector<float> shares_;    ///< of each part, of its disc's area
+    std::vector<uint32_t> first_;  ///< of each side of a disc: its parts; and their end
+    std::vector<bool> is_cut_;     ///< the same as bits, which stay in a cache: whether it has parts
 };
 
 }  // namespace lucarne::gi::paths

@@ -24,7 +24,7 @@ class SurfacesAboutAWall : public testing::Test {
 TEST_F(SurfacesAboutAWall, DividesDiscsThatReachThroughIt) {
     size_t through = 0;
     for (const CutOffPart& part : surfaces_.parts()) {
-        const Surfel& disc = surfaces_.surfels()[part.side / 2];
+        const Surfel disc = surfaces_.surfels()[part.side / 2];
         if (disc.normal.z < .5f || part.side % 2 || disc.position.y < .1f || disc.position.y > .9f) continue;
         EXPECT_LT(disc.position.x * part.position.x, 0) << "the part is behind the wall";
         EXPECT_LT(std::abs(disc.position.x), disc.radius);
