@@ -85,6 +85,15 @@ glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& 
     return sum;
 }
 
+Result<void> LightCutTracer::update(Frame& frame, uint64_t revision) {
+    if (tracer_ && revision_ == revision) return {};
+    const TimedPass pass(frame, "surfels for tracing");
+    tracer_.reset();
+    LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
+    revision_ = revision;
+    return {};
+}
+
 bool traces_shadows(const Frame& frame) {
     return frame.settings[kShadows] == Shadows::rays && !frame.moving;
 }

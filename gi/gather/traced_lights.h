@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "gi/shared/brdf.h"
 #include "gi/shared/light.h"
 #include "gi/tracing/surfel_tracer.h"
+#include "io/core/error.h"
 
 namespace lucarne::gi {
 
@@ -32,6 +34,20 @@ class TracedLights {
     std::vector<Light> sharp_, soft_;
     const SkyDirections& sky_;
     uint32_t samples_ = 1;  ///< of each light with a size
+};
+
+/// Rays against the surfels of an engine's light cut, kept as long as the cut stays.
+class LightCutTracer {
+ public:
+    /// Brings it up to date. `revision`: of the cut (LightCutRevisions::light). Errors: Embree's.
+    Result<void> update(Frame& frame, uint64_t revision);
+    /// Null: it was never brought up to date.
+    const tracing::SurfelTracer* get() const { return tracer_.get(); }
+    const tracing::SurfelTracer& operator*() const { return *tracer_; }
+
+ private:
+    std::unique_ptr<tracing::SurfelTracer> tracer_;
+    uint64_t revision_ = 0;
 };
 
 /// Whether the frame asks for shadows by rays: while anything moves, maps are faster, which stay.

@@ -33,7 +33,6 @@
 #include "gi/lighting/light_options.h"
 #include "gi/native/reflectance.h"
 #include "gi/shared/brdf.h"
-#include "gi/tracing/surfel_tracer.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
@@ -73,7 +72,6 @@ class PathsEngine final : public Engine {
         bool is_traced = false;     ///< shadows by rays, not by maps
         bool operator==(const Basis&) const = default;
     };
-    Result<void> make_tracer(Frame& frame);
     Result<void> add_direct(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const SkyDirections& sky_directions(const EngineSettings& settings) const;
     const PointSky* point_sky(const EngineSettings& settings);
@@ -96,9 +94,8 @@ class PathsEngine final : public Engine {
     std::optional<PointSky> point_sky_;    ///< even_sky_ at the points of the bake; made on first use
     std::optional<uint64_t> point_sky_of_;
     LightGBuffers light_gbuffers_;
-    uint64_t light_index_ = 0;                       ///< Frame::index by which lights with a size are sampled
-    std::unique_ptr<tracing::SurfelTracer> tracer_;  ///< of the light cut, once shadows ask for it
-    uint64_t tracer_of_ = 0;                         ///< revision of that cut
+    uint64_t light_index_ = 0;  ///< Frame::index by which lights with a size are sampled
+    LightCutTracer tracer_;
     EntryLight entry_light_;
     std::unique_ptr<Relight> relight_;
     Basis light_of_;
@@ -131,16 +128,6 @@ Result<void> PathsEngine::prepare(Frame& frame) {
         even_sky_of_ = scene_.environment;
     }
     return upload_materials(frame.gl.device, frame.materials, materials_);
-}
-
-/// Makes the tracer of the light cut.
-Result<void> PathsEngine::make_tracer(Frame& frame) {
-    if (tracer_ && tracer_of_ == cuts_.light) return {};
-    const TimedPass pass(frame, "surfels for tracing");
-    tracer_.reset();
-    LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
-    tracer_of_ = cuts_.light;
-    return {};
 }
 
 /// Adds the first reflection of the lights. `any_state`: maps of an earlier state of their cuts will do.
@@ -332,7 +319,7 @@ Result<void> PathsEngine::render(Frame& frame) {
     if (!direct && !at_points) return {};
     if (direct)
         LUCARNE_TRY(timed(frame, "emission", [&] { return add_own_light(frame, materials_, sky_, false); }));
-    if (traces_shadows(frame)) LUCARNE_TRY(make_tracer(frame));
+    if (traces_shadows(frame)) LUCARNE_TRY(tracer_.update(frame, cuts_.light));
     // In motion shadows may be those of a moment ago; they are renewed as far as the time goes.
     const bool in_parts = frame.moving && !frame.light_budget.whole();
     if (!in_parts) light_index_ = frame.index;

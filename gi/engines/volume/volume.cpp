@@ -19,7 +19,6 @@
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
 #include "gi/lighting/light_options.h"
-#include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi {
 namespace volume {
@@ -67,8 +66,7 @@ class VolumeEngine final : public Engine {
     std::optional<uint64_t> sky_of_;  ///< revision of the environment that both are made from
     std::vector<LightView> views_;    ///< of the lights and of what is bright in the sky
     LightGBuffers light_gbuffers_;
-    std::unique_ptr<tracing::SurfelTracer> tracer_;  ///< of the light cut, once shadows ask for it
-    uint64_t tracer_of_ = 0;
+    LightCutTracer tracer_;
     LightMaker maker_;
     VolumeLight light_;
     SceneRevisions scene_;  ///< of the frame that is drawn
@@ -135,12 +133,7 @@ Result<void> VolumeEngine::show_light(Frame& frame) {
 /// those of a moment ago.
 Result<void> VolumeEngine::add_direct(Frame& frame, bool any_state) {
     Device& device = frame.gl.device;
-    if (traces_shadows(frame) && (!tracer_ || tracer_of_ != cuts_.light)) {
-        const TimedPass pass(frame, "surfels for tracing");
-        tracer_.reset();
-        LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
-        tracer_of_ = cuts_.light;
-    }
+    if (traces_shadows(frame)) LUCARNE_TRY(tracer_.update(frame, cuts_.light));
     const TimedPass pass(frame, "direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, background_, true));
     if (traces_shadows(frame)) {
