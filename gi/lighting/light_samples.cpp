@@ -10,6 +10,7 @@
 #include "gi/gl_frame.h"
 #include "gi/lighting/area_points.h"
 #include "gi/lighting/light_options.h"
+#include "gi/lighting/nested_views.h"
 #include "gi/shared/brdf.h"
 #include "io/core/random.h"
 
@@ -126,6 +127,7 @@ bool shines(const Light& light) {
 }
 
 uint32_t light_faces(const Light& light) {
+    if (light.kind == kDirectionalLight) return std::max(light.nested, 1u);
     return light.kind == kPointLight ? 6 : light.kind == kCosineLight ? 4 : 1;
 }
 
@@ -147,8 +149,12 @@ std::vector<Light> sky_lights(const SkyDirections& sky, uint32_t count, uint64_t
 std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky, uint64_t index) {
     std::vector<SharpLight> result;
     std::vector<size_t> areas, suns;
-    for (size_t i = 0; i < frame.lights.size(); ++i) {
-        const Light& light = frame.lights[i];
+    std::vector<Light> own = frame.lights;
+    for (size_t i = 0; i < own.size(); ++i) {
+        Light& light = own[i];
+        if (light.kind == kDirectionalLight && frame.gl.cuts.light)
+            set_nested_views(glm::vec3(frame.camera.origin), frame.bounds, *frame.gl.cuts.light,
+                             frame.settings[kLightResolution], light);
         if (!has_size(light))
             result.push_back({light, frame.gl.cuts.light_views[i]});
         else if (shines(light))
@@ -167,11 +173,12 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
         return Strata(count, index, frame.settings[kSeed], i);
     };
     for (const size_t i : suns) {
-        const uint32_t count = share(most_samples(frame.lights[i], frame.settings[kLightResolution]), 1);
-        add_sun(frame.lights[i], strata(i, count), frame.gl.cuts.light_views[i], result);
+        const uint32_t most = most_samples(own[i], frame.settings[kLightResolution]);
+        const uint32_t count = share(most, light_faces(own[i]));
+        add_sun(own[i], strata(i, count), frame.gl.cuts.light_views[i], result);
     }
     for (const size_t i : areas)
-        add_area(frame.lights[i], strata(i, share(UINT32_MAX, 4)), frame.gl.cuts.light_views[i], result);
+        add_area(own[i], strata(i, share(UINT32_MAX, 4)), frame.gl.cuts.light_views[i], result);
     if (!sky.dark()) {
         const size_t beyond = frame.lights.size();
         for (const Light& light : sky_lights(sky, share(UINT32_MAX, 1), index, frame.settings[kSeed], beyond))

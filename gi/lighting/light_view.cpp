@@ -4,7 +4,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/gl_frame.h"
 #include "gi/lighting/light_options.h"
+#include "gi/lighting/nested_views.h"
 #include "gi/raster/gbuffer.h"
 
 namespace lucarne::gi {
@@ -83,10 +85,25 @@ CameraView quarter_view(const Light& light, uint32_t face, uint32_t resolution) 
             0};
 }
 
+/// Makes one of the nested views of a directional light that do not show everything. Its rays diverge as
+/// those of the whole view do, or less.
+CameraView finer_view(const Light& light, uint32_t face, const Bounds& bounds, uint32_t resolution) {
+    const glm::vec3 direction(light.direction), middle(light.position);
+    const float half =
+        light.position.w * std::pow(kNestedStep, static_cast<float>(face)) * (1 + kNestedBorder);
+    // What casts shadows may be as far away as the scan goes on.
+    const float reach =
+        glm::length(bounds.max - bounds.min) / 2 + glm::length((bounds.min + bounds.max) / 2.0f - middle);
+    const float distance = std::max(2 * kFarAway * half, 2 * reach);
+    return square_view(middle - direction * distance, direction, half / distance, distance - reach,
+                       resolution);
+}
+
 CameraView view_of(const Light& light, uint32_t face, const Frame& frame, uint32_t resolution) {
     switch (light.kind) {
         case kDirectionalLight:
-            return directional_view(light, frame.bounds, resolution);
+            return face + 1 < light.nested ? finer_view(light, face, frame.bounds, resolution)
+                                           : directional_view(light, frame.bounds, resolution);
         case kPointLight:
             return face_view(light, face, resolution);
         case kCosineLight:
@@ -125,8 +142,11 @@ std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky,
         // Many such samples make a light with a size, whose shadows are soft, so half the resolution is
         // enough.
         const uint32_t resolution = light.kind == kCosineLight ? std::max(side / 2, 1u) : side;
-        for (uint32_t face = 0; face < light_faces(light); ++face)
-            views.push_back({light, cut, face, view_of(light, face, frame, resolution), of_sky});
+        for (uint32_t face = 0; face < light_faces(light); ++face) {
+            // The light's own cut has the detail that its widest view shows.
+            const DeviceCut* drawn = face + 1 < light.nested ? frame.gl.cuts.light : cut;
+            views.push_back({light, drawn, face, view_of(light, face, frame, resolution), of_sky});
+        }
     }
     return views;
 }

@@ -10,9 +10,10 @@
 
 namespace lucarne::gi {
 
-/// A view from a light; rasterize() draws its G-buffer, which is also its shadow map. Spots and directional
-/// lights have one view. Point lights have six, the faces of a cube. Samples of areas have four, the
-/// quarters of the half space into which they shine (light_face() in gi/shared/light.h).
+/// A view from a light; rasterize() draws its G-buffer, which is also its shadow map. Spots have one view.
+/// Point lights have six, the faces of a cube. Samples of areas have four, the quarters of the half space
+/// into which they shine. Directional lights of large scans have some, one within the other (nested_views.h).
+/// light_face() in gi/shared/light.h tells which of them shows a point.
 struct LightView {
     Light light;  ///< sharp
     const DeviceCut* cut;
@@ -33,9 +34,9 @@ Outline outline_along(const Bounds& bounds, const glm::vec3& direction);
 
 /// Returns the views of all lights of the frame (`sky` is that of its environment; `index` in place of
 /// Frame::index chooses the samples of lights with a size), with kLightResolution
-/// texels along a side, half as many for points of areas. The view of a directional light covers the bounds
-/// of the frame with a rectangle of as many texels; its pinhole is so far away that its rays diverge by less
-/// than a texel over the height of the scene.
+/// texels along a side, half as many for points of areas. The widest view of a directional light covers the
+/// bounds of the frame with a rectangle of as many texels; its pinhole is so far away that its rays diverge
+/// by less than a texel over the height of the scene.
 std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky, uint64_t index);
 
 }  // namespace lucarne::gi

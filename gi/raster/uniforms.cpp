@@ -32,6 +32,7 @@ void set(const Program& program, std::string_view uniform, const Light& light) {
     set_member(program, uniform, ".strength", light.strength);
     set_member(program, uniform, ".extent", light.extent);
     program.set(std::string(uniform).append(".kind"), light.kind);
+    program.set(std::string(uniform).append(".nested"), light.nested);
 }
 
 }  // namespace lucarne::gi

@@ -20,9 +20,14 @@ LUCARNE_CONST uint kDiscLight = 4u;         // from one side of a disc, one radi
 // by such points.
 LUCARNE_CONST uint kCosineLight = 5u;
 
+// How many times as wide each of a directional light's nested views is as the next finer one.
+LUCARNE_CONST float kNestedStep = 4.0f;
+
 // What each field holds, by kind. Fields that a kind does not name are unused.
 //   position   spot, point, cosine, rectangle, disc: the middle, m, relative to the local origin;
-//              w of a spot: cos_outer
+//              w of a spot: cos_outer;
+//              directional with nested views (gi/lighting/nested_views.h): the middle of these views;
+//              w: half the width of the finest, m
 //   direction  unit, the way the light goes (cosine, rectangle, disc: the normal of the emitting side);
 //              w of a spot: cos_inner; w of a directional light: angular radius of the cap, 0 to pi/2
 //   strength   spot, point, cosine: radiant intensity, W/sr (cosine: along the normal);
@@ -38,7 +43,9 @@ LUCARNE_STRUCT(Light) {
     vec4 direction;
     vec4 strength;
     vec4 extent;
-    uint kind, pad0, pad1, pad2;
+    uint kind;
+    uint nested;  // directional: how many views it has, 0 or 1: one
+    uint pad0, pad1;
 #ifdef __cplusplus
     bool operator==(const Light&) const = default;
 #endif
@@ -66,10 +73,27 @@ LUCARNE_FN uint cube_face(vec3 offset) {
     return offset.z > 0.0f ? 4u : 5u;
 }
 
+// Returns the finest of a directional light's nested views that shows what is at an offset from their middle.
+// Each but the last reaches kNestedStep times as far across the direction as the one before; the last shows
+// everything.
+LUCARNE_FN uint nested_view(Light light, vec3 offset) {
+    vec3 direction = vec3(light.direction.x, light.direction.y, light.direction.z);
+    vec3 across = offset - direction * dot(offset, direction);
+    float beyond = length(across) / light.position.w;
+    uint view = 0u;
+    while (view + 1u < light.nested && beyond > 1.0f) {
+        beyond /= kNestedStep;
+        ++view;
+    }
+    return view;
+}
+
 // Returns the face of a light that an offset from it goes through: one of the six faces of a point light's
-// cube, one of the four quarters of a cosine light's half space (about its normal), else 0.
+// cube, one of the four quarters of a cosine light's half space (about its normal), one of the nested views
+// of a directional light, else 0.
 LUCARNE_FN uint light_face(Light light, vec3 offset) {
     if (light.kind == kPointLight) return cube_face(offset);
+    if (light.kind == kDirectionalLight && light.nested > 1u) return nested_view(light, offset);
     if (light.kind != kCosineLight) return 0u;
     vec3 normal = vec3(light.direction.x, light.direction.y, light.direction.z);
     vec3 side = vec3(light.extent.x, light.extent.y, light.extent.z);

@@ -9,6 +9,7 @@
 #include "gi/shared/light.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
+#include "io/core/random.h"
 
 namespace lucarne::gi::paths {
 namespace {
@@ -20,8 +21,7 @@ constexpr size_t kEntriesATask = 1024;
 /// Returns how many of the first views belong to one light.
 size_t views_of_one(std::span<const LightView> views) {
     size_t count = 1;
-    while (count < views.size() && views[count].light == views[0].light && views[count].cut == views[0].cut)
-        ++count;
+    while (count < views.size() && views[count].light == views[0].light) ++count;
     return count;
 }
 
@@ -102,7 +102,9 @@ Result<std::vector<glm::vec3>> EntryLight::irradiance(Frame& frame, std::span<co
         const auto own = views.first(keeps ? views_of_one(views) : views.size());
         const Light& light = own[0].light;
         const bool is_traced = tracer != nullptr;
-        const uint64_t cut = (is_traced ? frame.gl.cuts.light : own[0].cut)->fingerprint();
+        uint64_t cut = is_traced ? frame.gl.cuts.light->fingerprint() : 0;
+        if (!is_traced)
+            for (const LightView& view : own) cut = mix64(cut, view.cut->fingerprint());
         const auto found = std::ranges::find_if(kept_, [&](const Kept& k) {
             if (!keeps || k.light != light) return false;
             return any_state ? k.is_traced || !is_traced : k.cut == cut && k.is_traced == is_traced;

@@ -7,6 +7,8 @@
 #define LUCARNE_GI_LIGHTING_NATIVE_EMISSION_INL_H
 #endif
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -41,6 +43,18 @@ HWY_INLINE Mask goes_through(const Light& light, uint32_t face, const V3& offset
                        : face < 4 ? second
                                   : third,
                        flip(hn::Gt(along, zero), face % 2 == 0));
+    }
+    if (light.kind == kDirectionalLight && light.nested > 1) {
+        // nested_view()
+        const F along = dot(offset, light.direction);
+        const F across2 = sub(dot(offset, offset), mul(along, along));
+        const auto within = [&](uint32_t view) {
+            const float half = light.position.w * std::pow(kNestedStep, static_cast<float>(view));
+            return hn::Le(across2, set(half * half));
+        };
+        const Mask all = hn::Eq(zero, zero);
+        return hn::AndNot(face == 0 ? hn::Not(all) : within(face - 1),
+                          face + 1 < light.nested ? within(face) : all);
     }
     const glm::vec3 side(light.extent), other = glm::cross(glm::vec3(light.direction), side);
     if (light.kind != kCosineLight) return hn::Eq(zero, zero);

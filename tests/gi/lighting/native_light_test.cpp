@@ -17,6 +17,7 @@
 #include "io/core/parallel.h"
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/lighting/town.h"
 #include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
@@ -51,6 +52,7 @@ struct Shot {
     CameraView camera;
     std::vector<Light> lights;
     bool sky = false;
+    Bounds bounds{{-2, 0, -2}, {2, 3, 2}};
 };
 
 CameraView seen_by(uint32_t width, uint32_t height) {
@@ -105,8 +107,9 @@ class NativeLight : public OnDevice {
         native::use_instruction_set(-1);
         OnDevice::TearDown();
     }
-    void load(const std::vector<Surfel>& surfels) {
-        auto loaded = load_cloud(*device, SurfelCloud(surfels));
+    void load(const std::vector<Surfel>& surfels) { load(SurfelCloud(surfels)); }
+    void load(const SurfelCloud& cloud) {
+        auto loaded = load_cloud(*device, cloud);
         ASSERT_TRUE(loaded);
         loaded_ = std::move(*loaded);
     }
@@ -187,7 +190,7 @@ class NativeLight : public OnDevice {
                     .background = {0.3f, 0.2f, 0.1f},
                     .settings = settings,
                     .environment = shot_.sky ? environment_ : nullptr,
-                    .bounds = {{-2, 0, -2}, {2, 3, 2}},
+                    .bounds = shot_.bounds,
                     .gl = on_device,
                     .times = times};
         body(frame);
@@ -216,6 +219,25 @@ class NativeLight : public OnDevice {
 
 bool alike(const glm::vec4& a, const glm::vec4& b, float share = 1e-4f) {
     return glm::distance(a, b) <= share * glm::length(a);
+}
+
+TEST_F(NativeLight, IsThatOfTheShadersInNestedViews) {
+    load(scenes::town());
+    draw({"town",
+          scenes::seen_town(150),
+          {scenes::wide_sun({.3f, .5f, -.6f}, 0, 5)},
+          false,
+          scenes::town_bounds()});
+    ASSERT_GT(views_.size(), 1u);
+    const auto natively = light(true), by_shaders = light(false);
+    size_t others = 0;
+    for (size_t i = 0; i < pixels_; ++i) others += !alike(natively[i], by_shaders[i]);
+    EXPECT_LE(others, pixels_ / 100) << "points at the borders of shadows";
+    const auto lit = surfel_light(true).irradiance, lit_by_shaders = surfel_light(false).irradiance;
+    others = 0;
+    for (size_t i = 0; i < lit.size(); ++i)
+        others += !alike(glm::vec4(lit[i], 0), glm::vec4(lit_by_shaders[i], 0));
+    EXPECT_LE(others, lit.size() / 100);
 }
 
 TEST_F(NativeLight, IsThatOfTheShaders) {

@@ -27,7 +27,10 @@ uint importance_level(uint level) {  // index of the first texel of a level
 // Returns what leaves the pinhole of the view in a unit direction, W/sr, toward a surface at a squared distance. The
 // pinhole of a directional light is so far away that its irradiance spreads like the flux through the solid angle.
 vec3 view_intensity(vec3 away, float distance2) {
-    if (light.kind == kDirectionalLight) return light.strength.xyz * distance2;
+    if (light.kind == kDirectionalLight) {
+        vec3 offset = light_view.origin.xyz + away * sqrt(distance2) - light.position.xyz;
+        return light_face(light, offset) == face ? light.strength.xyz * distance2 : vec3(0.0);
+    }
     if (light_face(light, away) != face) return vec3(0.0);
     return light_intensity(light, away);
 }

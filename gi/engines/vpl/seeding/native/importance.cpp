@@ -49,7 +49,12 @@ inline F mean_intensity(const ImportanceJob& job, int x, int y, F depth) {
         const V3 ray = view_ray(view, add(first, set(dx)), add(row, set(dy)));
         const F length2 = dot(ray, ray);
         F share = mul(mul(depth, depth), length2);
-        if (light.kind != kDirectionalLight) {
+        if (light.kind == kDirectionalLight) {
+            const glm::vec3 from = glm::vec3(view.origin) - glm::vec3(light.position);
+            const V3 offset{add(mul(ray.x, depth), set(from.x)), add(mul(ray.y, depth), set(from.y)),
+                            add(mul(ray.z, depth), set(from.z))};
+            share = hn::IfThenElseZero(goes_through(light, job.input.face, offset), share);
+        } else {
             const F cosine = over(dot(ray, light.direction), hn::Sqrt(length2));
             share =
                 hn::IfThenElseZero(goes_through(light, job.input.face, ray), intensity_share(light, cosine));
