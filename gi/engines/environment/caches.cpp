@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "io/core/parallel.h"
 
@@ -18,6 +20,9 @@ constexpr float kLeastAgreement = 0.9f;
 constexpr float kAcross = 4;
 /// A cache is in front of a pixel's plane beyond this share of its reach.
 constexpr float kInFront = 0.06f;
+/// What a slope costs in LinearFit, in values of full weight at the end of their reach. With less, walls have
+/// blotches along their edges.
+constexpr float kFlatness = 0.1f;
 /// Pixels with less weight than this in all are lonely.
 constexpr float kLeastSum = 0.02f;
 
@@ -34,6 +39,44 @@ float weight_of(const Cache& cache, const SurfacePoint& at) {
     const float turned = std::sqrt(std::max(1 - agreement, 0.0f) / (1 - kLeastAgreement));
     return std::max(1 - std::max(away, turned), 0.0f);
 }
+
+/// Local linear regression over a plane (Fan 1992, "Design-adaptive nonparametric regression"): fits a value
+/// at the origin and a slope to weighted values about it. A weighted mean is too low where all values lie on
+/// the darker side, as on a floor at the foot of a sunlit wall.
+class LinearFit {
+ public:
+    explicit LinearFit(const glm::vec3& normal) {
+        const glm::vec3 helper = std::abs(normal.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+        right_ = glm::normalize(glm::cross(normal, helper));
+        up_ = glm::cross(right_, normal);
+    }
+    void add(const glm::vec3& offset, float reach, float weight) {
+        if (!(scale_ > 0)) scale_ = 1 / reach;
+        const glm::vec3 row = row_of(offset);
+        sums_ += weight * glm::outerProduct(row, row);
+        spread_ += weight * (reach * scale_) * (reach * scale_);
+    }
+    float weights() const { return sums_[0][0]; }
+    /// Slopes cost a little (ridge regression), because one from few values would be their noise.
+    void solve() {
+        sums_[1][1] += kFlatness * spread_ / weights();
+        sums_[2][2] += kFlatness * spread_ / weights();
+        factors_ = glm::inverse(sums_)[0];
+    }
+    /// Returns by how much the weight of a value is to be multiplied, so that their sum is that at the
+    /// origin.
+    float factor(const glm::vec3& offset) const { return glm::dot(factors_, row_of(offset)); }
+
+ private:
+    glm::vec3 row_of(const glm::vec3& offset) const {
+        return {1, scale_ * glm::dot(offset, right_), scale_ * glm::dot(offset, up_)};
+    }
+
+    float scale_ = 0;  ///< 1/m; with the first reach as unit, no scene is too small or too large for floats
+    glm::vec3 right_, up_, factors_{0.0f};
+    glm::mat3 sums_{0.0f};
+    float spread_ = 0;
+};
 
 }  // namespace
 
@@ -85,17 +128,17 @@ std::optional<LightByNormal> CacheTiles::light_at(const SurfacePoint& at, const 
         return static_cast<size_t>(std::clamp(place / kTileSide, 0.0f, static_cast<float>(count - 1)));
     };
     const size_t number = tile(pixel.y, rows_) * columns_ + tile(pixel.x, columns_);
+    const auto counting = std::span(numbers_).subspan(starts_[number], starts_[number + 1] - starts_[number]);
+    LinearFit fit(at.normal);
+    for (const uint32_t i : counting)
+        if (const float weight = weight_of(caches_[i], at); weight > 0)
+            fit.add(caches_[i].position - at.position, caches_[i].reach, weight);
+    if (!(fit.weights() > kLeastSum)) return std::nullopt;
+    fit.solve();
     LightByNormal sum{};
-    float weights = 0;
-    for (size_t i = starts_[number]; i < starts_[number + 1]; ++i) {
-        const Cache& cache = caches_[numbers_[i]];
-        const float weight = weight_of(cache, at);
-        if (!(weight > 0)) continue;
-        sum.add(cache.light, weight);
-        weights += weight;
-    }
-    if (!(weights > kLeastSum)) return std::nullopt;
-    sum.scale(1 / weights);
+    for (const uint32_t i : counting)
+        if (const float weight = weight_of(caches_[i], at); weight > 0)
+            sum.add(caches_[i].light, weight * fit.factor(caches_[i].position - at.position));
     return sum;
 }
 

@@ -28,8 +28,10 @@ class CacheTiles {
 
     /// Interpolates the light about a surface point from the caches about it (Harada 2014, section 3.5): each
     /// counts by how near it is and how much its normal agrees (Ward et al. 1988, with the smooth weights of
-    /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. `pixel`: where
-    /// it is seen if nothing hides it; the nearest place in the picture counts. Nothing if no cache counts.
+    /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. A slope is
+    /// fitted to their light, because their mean is wrong where all of them lie on one side of the point.
+    /// `pixel`: where it is seen if nothing hides it; the nearest place in the picture counts. Nothing if no
+    /// cache counts.
     std::optional<LightByNormal> light_at(const SurfacePoint& at, const glm::vec2& pixel) const;
 
  private:
