@@ -50,7 +50,7 @@ constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
 /// Caches share their light over this share of their harmonic distance, at most so many radii. Most of it
 /// may come from small windows or patches of sun, which few rays meet: with their reach, walls had blotches.
-constexpr float kShareToSmooth = 0.15f, kReachToSmooth = 8;
+constexpr float kShareToSmooth = 0.1f, kReachToSmooth = 8;
 constexpr size_t kMostSecondariesHeld = 262144;  ///< their micro-buffers take 85 MB; more are not kept
 constexpr uint32_t kRepairSpacing = 4;           ///< pixels between those lonely ones that gather first
 constexpr size_t kRepairsAtOnce = 16384;         ///< micro-buffers of lonely pixels
