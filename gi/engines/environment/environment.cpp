@@ -1,6 +1,7 @@
 #include "gi/engines/environment/environment.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -43,8 +44,9 @@ constexpr EngineInfo kInfo{
 constexpr size_t kPointsATask = 256;
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 340 MB
-/// Places between which light is exchanged are this much farther apart than caches.
-constexpr float kCoarser = 4;
+/// Secondary points are four times as far apart as caches in a picture of about this side, pixels. In larger
+/// ones they stay as far apart in the scene: what pixels show by one more reflection is no finer there.
+constexpr float kCoarser = 4, kUsualSide = 250;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
 constexpr float kShareOfDistance = 0.7f;  ///< the reach beside other surfaces, of their harmonic distance
@@ -168,7 +170,8 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
         if (s[kBruteForce]) {
             secondaries_.choose_all(tree);
         } else {
-            const float spacing = kCoarser * static_cast<float>(s[kCacheSpacing]);
+            const float side = std::sqrt(static_cast<float>(frame.camera.width * frame.camera.height));
+            const float spacing = kCoarser * side / kUsualSide * static_cast<float>(s[kCacheSpacing]);
             LUCARNE_ASSIGN(const auto seen, buffers_.seen());
             secondaries_.choose(tree, seen,
                                 [&](size_t slot) { return shares_light(tree, slot, frame.camera, spacing); });
