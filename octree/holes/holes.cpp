@@ -40,7 +40,13 @@ constexpr float kFloor = 0.9f, kMostFloorHole = 2.0f, kMostHole = 0.4f;  ///< co
 /// Round holes of floors are those below tripods. They may be larger, and end at a wall.
 constexpr double kRound = 0.8;  ///< area in that of the disc around the hole; a square's is .64
 constexpr double kLeastSurfaceDisc = 0.6;
-constexpr float kMostDisc = 5.5f;      ///< m, diagonal of the bounds: 3.9 m wide
+constexpr float kMostDisc = 5.5f;  ///< m, diagonal of the bounds: 3.9 m wide
+/// The tripod hides walls, too, so far around the middle of the floor's hole (in its radii, to which walls
+/// that cut it off add) and as high, m. Least share of the cells of a wall's hole that lie there, and of
+/// its rim that is surface.
+constexpr float kTripodWidth = 1.2f, kTripodHeight = 1.3f;
+constexpr double kBelowTripod = 0.95, kLeastSurfaceBelow = 0.3;
+constexpr float kWall = 0.3f;          ///< |z| of a wall's normal, at most
 constexpr float kBeside = 1.5f;        ///< cells: what is so near belongs to the plane
 constexpr float kLookedBehind = 3.0f;  ///< m
 
@@ -60,6 +66,13 @@ struct Hole {
     std::vector<uint32_t> creases;  ///< cells that a crease divides
     std::vector<uint32_t> shores;   ///< cells of its rim: parts of them may be empty
     std::vector<RimPlace> rim;
+};
+
+/// A round hole of a floor, below a tripod.
+struct Tripod {
+    size_t plane = 0;
+    glm::vec3 centre{0.0f};
+    float radius = 0;  ///< m
 };
 
 /// Connected hidden cells of a plane, and what is around them.
@@ -91,11 +104,39 @@ class HoleFinder {
     HoleFinder(const PlaneGrid& grid, const Voxels& voxels, size_t plane, bool stations)
         : grid_(grid), voxels_(voxels), plane_(plane), stations_(stations) {}
 
-    void find(std::vector<Hole>& holes) {
+    /// Finds the holes of the plane and, if no station is known, the tripods that stand on it.
+    void find(std::vector<Hole>& holes, std::vector<Tripod>& tripods) {
         find_components();
         if (!stations_ && !components_.empty()) behind_ = side_behind();
         std::erase_if(components_, [&](const Component& component) { return !is_hole(component); });
         if (!stations_) drop_seen_behind();
+        if (!stations_ && is_floor())
+            for (const Component& component : components_)
+                if (const Disc disc = disc_of(component); disc.round)
+                    tripods.push_back(
+                        {plane_, grid_.place_of(grid_.flat_of({0, 0}, disc.centre)), disc.radius});
+        add_to(holes);
+    }
+
+    /// Finds the holes of a wall that tripods hid from their stations.
+    void find_below(const std::vector<Tripod>& tripods, std::vector<Hole>& holes) {
+        if (tripods.empty() || std::abs(grid_.plane().normal.z) > kWall) return;
+        find_components();
+        std::erase_if(components_, [&](const Component& component) {
+            if (is_hole(component)) return true;  // find() has decided about it
+            const auto tripod = std::ranges::find_if(
+                tripods, [&](const Tripod& before) { return is_below(component, before); });
+            if (tripod == tripods.end()) return true;
+            behind_ = grid_.plane().height(tripod->centre) > 0 ? -1.0f : 1.0f;
+            return false;
+        });
+        one_sided_ = true;
+        drop_seen_behind();
+        add_to(holes);
+    }
+
+ private:
+    void add_to(std::vector<Hole>& holes) {
         if (components_.empty()) return;
         enter_voxels();
         for (Component& component : components_) {
@@ -104,7 +145,6 @@ class HoleFinder {
         }
     }
 
- private:
     static bool is_hidden(PlaneCell state) { return state == PlaneCell::hidden || state == PlaneCell::seen; }
     bool hidden(const glm::ivec2& cell) const {
         return grid_.inside(cell.x, cell.y) && is_hidden(state(cell));
@@ -161,16 +201,41 @@ class HoleFinder {
                static_cast<float>(1 + glm::length(glm::vec2(component.most - component.least)));
     }
 
-    /// Whether the hole is round, as below a tripod. It may end at a wall.
-    bool is_disc(const Component& component) const {
-        glm::dvec2 centre(0.0);
-        for (const uint32_t cell : component.cells) centre += glm::dvec2(grid_.cell_at(cell));
-        centre /= static_cast<double>(component.cells.size());
+    /// The disc around a hole, and whether the hole is round, as below a tripod. It may end at a wall.
+    struct Disc {
+        glm::dvec2 centre{0.0};  ///< in cells
+        float radius = 0;        ///< m
+        bool round = false;
+    };
+    Disc disc_of(const Component& component) const {
+        Disc disc;
+        for (const uint32_t cell : component.cells) disc.centre += glm::dvec2(grid_.cell_at(cell));
+        disc.centre /= static_cast<double>(component.cells.size());
         double farthest = 0;
         for (const uint32_t cell : component.cells)
-            farthest = std::max(farthest, glm::distance(glm::dvec2(grid_.cell_at(cell)), centre));
-        const double disc = std::numbers::pi * (farthest + 0.5) * (farthest + 0.5);
-        return static_cast<double>(component.cells.size()) >= kRound * disc;
+            farthest = std::max(farthest, glm::distance(glm::dvec2(grid_.cell_at(cell)), disc.centre));
+        const double around = std::numbers::pi * (farthest + 0.5) * (farthest + 0.5);
+        disc.radius = grid_.cell() * static_cast<float>(farthest + 0.5);
+        disc.round = static_cast<double>(component.cells.size()) >= kRound * around;
+        disc.centre += 0.5;
+        return disc;
+    }
+
+    /// Whether a wall's hole lies where a tripod stood before the wall.
+    bool is_below(const Component& component, const Tripod& tripod) const {
+        if (component.cells.size() < kLeastCells) return false;
+        const auto rim = static_cast<double>(component.surface + component.crease + component.open);
+        const auto surface = static_cast<double>(component.surface),
+                   known = surface + static_cast<double>(component.crease);
+        if (surface < kLeastSurfaceBelow * rim || known < kLeastSurfaceBlind * rim) return false;
+        size_t below = 0;
+        for (const uint32_t cell : component.cells) {
+            const glm::vec3 apart = grid_.place_of(grid_.flat_of(grid_.cell_at(cell))) - tripod.centre;
+            below += glm::length(glm::vec2(apart)) < kTripodWidth * tripod.radius && apart.z < kTripodHeight;
+        }
+        return static_cast<double>(below) >= kBelowTripod * static_cast<double>(component.cells.size()) &&
+               static_cast<double>(component.cells.size()) <=
+                   kMostOfPlane * static_cast<double>(grid_.covered());
     }
 
     bool is_hole(const Component& component) const {
@@ -186,7 +251,7 @@ class HoleFinder {
             return surface >= kLeastSurface && known >= kLeastKnown && hidden >= kLeastHidden &&
                    share <= kMostOfPlane;
         const bool floor = is_floor();
-        if (floor && is_disc(component))
+        if (floor && disc_of(component).round)
             return surface >= kLeastSurfaceDisc && known >= kLeastSurfaceBlind && share <= kMostOfPlane &&
                    diameter(component) <= kMostDisc;
         const float most = floor ? kMostFloorHole : kMostHole;
@@ -218,7 +283,7 @@ class HoleFinder {
         std::vector<bool> seen(components_.size(), false);
         for (const Voxel& voxel : voxels_.all()) {
             const float height = grid_.plane().height(voxel.position);
-            const float depth = is_floor() ? behind_ * height : std::abs(height);
+            const float depth = is_floor() || one_sided_ ? behind_ * height : std::abs(height);
             if (depth < kBeside * grid_.cell() || depth > kLookedBehind) continue;
             const glm::ivec2 cell = grid_.cell_of(grid_.plane().flat(voxel.position));
             for (int y = cell.y - 1; y <= cell.y + 1; ++y)
@@ -309,7 +374,8 @@ class HoleFinder {
     const Voxels& voxels_;
     const size_t plane_;
     const bool stations_;
-    float behind_ = -1;  ///< the sign of heights behind the plane
+    float behind_ = -1;       ///< the sign of heights behind the plane
+    bool one_sided_ = false;  ///< a wall that was scanned from the other side only, as far as is known
     std::vector<uint8_t> label_;
     std::vector<Component> components_;
     std::vector<uint32_t> voxel_at_;
@@ -357,17 +423,16 @@ class HoleSearch {
         cover(sample);
         for (PlaneGrid& grid : grids_) grid.look(views_);
         creases_.resize(grids_.size());
-        uint64_t work = 0;
         for (size_t i = 0; i < grids_.size(); ++i)
-            for (size_t j = 0; j < grids_.size() && work < kMostSteps; ++j)
-                if (i != j)
-                    work += mark_creases(grids_[i], grids_[j], kCreaseReach, kMostSteps - work, creases_[i]);
+            for (size_t j = 0; j < grids_.size(); ++j) mark(i, j);
     }
 
-    std::vector<FillPoint> run() const {
+    std::vector<FillPoint> run() {
         std::vector<Hole> holes;
+        std::vector<Tripod> tripods;
         for (size_t i = 0; i < grids_.size(); ++i)
-            HoleFinder(grids_[i], voxels_, i, !views_.empty()).find(holes);
+            HoleFinder(grids_[i], voxels_, i, !views_.empty()).find(holes, tripods);
+        find_below(tripods, holes);
         const auto cells = [](const Hole& hole) {
             return hole.cells.size() + hole.creases.size() + hole.shores.size();
         };
@@ -383,6 +448,29 @@ class HoleSearch {
     }
 
  private:
+    /// Marks the creases of one plane with another.
+    void mark(size_t plane, size_t other) {
+        if (plane != other && work_ < kMostSteps)
+            work_ +=
+                mark_creases(grids_[plane], grids_[other], kCreaseReach, kMostSteps - work_, creases_[plane]);
+    }
+
+    /// Finds the holes of walls below tripods. Their floors, which are closed now, bound them.
+    void find_below(const std::vector<Tripod>& tripods, std::vector<Hole>& holes) {
+        if (tripods.empty()) return;
+        const auto has_tripod = [&](size_t plane) {
+            return std::ranges::any_of(tripods, [&](const Tripod& on) { return on.plane == plane; });
+        };
+        for (const Hole& hole : holes)
+            if (has_tripod(hole.plane))
+                for (const uint32_t cell : hole.cells) grids_[hole.plane].set(cell, PlaneCell::surface);
+        for (size_t i = 0; i < grids_.size(); ++i) {
+            for (size_t j = 0; j < grids_.size(); ++j)
+                if (has_tripod(j)) mark(i, j);
+            HoleFinder(grids_[i], voxels_, i, false).find_below(tripods, holes);
+        }
+    }
+
     void cover(const HoleSample& sample) {
         for (size_t i = 0; i < sample.points.size(); ++i) {
             const uint32_t voxel = voxels_.of_point(i);
@@ -424,6 +512,7 @@ class HoleSearch {
     StationViews views_;
     std::vector<PlaneGrid> grids_;
     std::vector<std::vector<CreasePlane>> creases_;  ///< of each grid
+    uint64_t work_ = 0;                              ///< steps of marking creases
 };
 
 }  // namespace

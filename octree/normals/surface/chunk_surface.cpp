@@ -44,6 +44,11 @@ constexpr float kMostShares = 4, kWide = 1.5f;
 constexpr double kSparse = 8;
 /// From this ratio on a site must have earned its size (earned.h).
 constexpr double kThin = 4;
+/// Neighbours whose variance across their main axis is below this share of that along it are a strip, such as
+/// a wire or the rim of a pane: two points wide, or three. Half a disc has .28.
+constexpr float kStrip = 0.13f;
+/// Largest share of a point of a strip, in those of the neighbours.
+constexpr float kMostOfStrip = 1.0f;
 /// From this ratio on the group of points in the air may be farther from the surface than kWindow.
 constexpr double kVerySparse = 24, kFarWindow = 4;
 /// If the window of such a site holds this many times what a surface of the site's own density has there, the
@@ -220,6 +225,8 @@ class SiteEstimator {
             outward = cell.outward();
             area = cell.area();
         }
+        if (!side && sparser > kThin && fit.roundness < kStrip)
+            if (const float most = most_of_strip(nearest); area > kWide * most) area = most;
         const bool wide = area > kWide * spacing * spacing;
         if (wide || apart || sparser > kThin) {
             // What crowds a site may be farther away than its disc reaches.
@@ -290,6 +297,13 @@ class SiteEstimator {
     float most_beside(const Patch& nearest, float area) {
         const float most = kMostShares * share_of_neighbours(nearest);
         return area > most && !fitter_.lies_in_plane_of_others(nearest) ? most : area;
+    }
+
+    /// The largest share of a point of a strip that hangs in the air. Its cell reaches across the strip as
+    /// far as along it, which is many times the step from one point to the next.
+    static float most_of_strip(const Patch& nearest) {
+        const float own = std::numbers::pi_v<float> / 2 * nearest.distance2[2];
+        return kMostOfStrip * std::max(own, share_of_neighbours(nearest));
     }
 
     /// The number of points within `times` the reach, divided by that of a sheet as sparse as the site's

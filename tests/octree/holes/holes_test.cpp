@@ -196,6 +196,47 @@ TEST(Holes, WithoutStationsOnlySmallHolesOfFloorsAreFilled) {
                 })).empty());
 }
 
+/// A tripod beside a wall hides a part of the wall, too.
+TEST(Holes, WithoutStationsWallsAreFilledBelowTripods) {
+    const std::vector<Wall> walls = room();
+    const std::vector<glm::vec3> stations{{5.1f, 2.5f, 1.7f}};
+    HoleSample sample = scan_walls(walls, stations);
+    sample.stations.clear();
+    for (HolePoint& point : sample.points) point.station = -1;
+    const auto on_wall = [](const FillPoint& point) {
+        return std::abs(point.position.x - 6) < 0.02f && point.position.z > 0.02f;
+    };
+    const auto area = [&](const std::vector<FillPoint>& points) {
+        float sum = 0;
+        for (const FillPoint& point : points) sum += on_wall(point) ? point.area : 0.0f;
+        return sum;
+    };
+    const float expected = unseen_area(walls, stations, 3);
+    EXPECT_GT(expected, 0.1f);
+    const auto points = find_holes(sample);
+    EXPECT_NEAR(area(points), expected, 0.2f * expected);
+    EXPECT_NEAR(filled_area(points), expected + unseen_area(walls, stations, 0), 0.15f);
+    EXPECT_EQ(count(points, [&](const FillPoint& p) { return distance_to(walls, p.position) > 0.02f; }), 0);
+    // Something before the wall, such as a pipe, does not keep it open. Something behind it does.
+    for (const float x : {5.6f, 6.5f}) {
+        HoleSample more = sample;
+        for (int i = 0; i < 400; ++i)
+            more.points.push_back({.position = {x, 2.5f + 0.02f * static_cast<float>(i % 20 - 10),
+                                                0.3f * static_cast<float>(i / 20) / 20},
+                                   .normal = -kX,
+                                   .area = 4e-4f});
+        EXPECT_EQ(area(find_holes(more)) > 0, x < 6) << x;
+    }
+    // A hole as large elsewhere may be a window.
+    HoleSample window = sample;
+    std::erase_if(window.points, [](const HolePoint& p) {
+        return p.position.x < 0.1f && std::abs(p.position.y - 2.5f) < 0.5f && p.position.z < 0.5f;
+    });
+    EXPECT_EQ(count(find_holes(window),
+                    [](const FillPoint& p) { return p.position.x < 0.02f && p.position.z > 0.05f; }),
+              0);
+}
+
 /// No input takes more than a few seconds, or more surfels than allowed.
 TEST(Holes, BadInputIsHarmless) {
     Random random(7);

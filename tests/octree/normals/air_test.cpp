@@ -121,6 +121,27 @@ TEST(Air, RailingsAndWiresBeforeWallsStay) {
     }
 }
 
+/// Of a wire with hardly more than one point after the other, some plane through these is stable. Their discs
+/// are no wider than the step from one to the next is long.
+TEST(Air, WiresOfSinglePointsAreThin) {
+    Random random(16);
+    Cloud cloud;
+    add_wall(cloud, {0, 0, 0}, {2, 0, 0}, {0, 1, 0}, kWallSpacing / 2, random);
+    const size_t wire = cloud.points.size();
+    constexpr double kStep = 0.012, kScatter = 0.003;
+    for (double x = 0.2; x < 1.8; x += kStep)
+        cloud.points.emplace_back(x, 0.5 + kScatter * gaussian(random),
+                                  0.4 + 0.3 * kScatter * gaussian(random));
+    cloud.normals.resize(cloud.points.size());
+    cloud.stations.resize(cloud.points.size());
+    const Estimate found = estimate(cloud);
+    const Drawn discs = drawn(found, wire, cloud.points.size());
+    std::printf("wire: %zu of %zu discs, radius up to %.3f m\n", discs.count, cloud.points.size() - wire,
+                discs.widest);
+    EXPECT_GE(discs.count, (cloud.points.size() - wire) * 9 / 10);
+    EXPECT_LT(discs.widest, 2.5 * kStep);
+}
+
 TEST(Air, ADiscInACrowdMustLieInItsPlane) {
     Random random(15);
     // Of a disc of radius 1 in the plane z = 0 among points of planes that are tilted against it.
