@@ -10,6 +10,7 @@
 
 #include "io/core/parallel.h"
 #include "octree/normals/estimate_range.h"
+#include "octree/normals/surface/board_ends.h"
 #include "octree/normals/surface/chunk_surface.h"
 #include "octree/normals/surface/edge_agreement.h"
 
@@ -130,6 +131,7 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
     if (!rays.empty()) {
         drop_curtains(surface, rays);
+        take_seen_ends(surface, rays);
         narrow_at_corners(surface, rays);
     }
     drop_doubtful_sides(surface, rays);

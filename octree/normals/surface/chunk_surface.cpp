@@ -66,6 +66,8 @@ constexpr float kBeyondEdge = 0.05f, kRoughEdge = 0.25f, kOverEdge = 0.5f;
 /// At a border points up to so many deviations of the heights, and so many spacings more, over the tangent
 /// plane belong to the surface.
 constexpr float kRoughLevel = 3.0f, kFlatLevel = 0.1f;
+/// Points nearer to their border than this, in spacings, are the outermost: it stands .5 beyond them.
+constexpr float kOutermost = 1.0f;
 /// Largest share of a point of a narrow face, in squares of the spacing of all points around.
 constexpr float kMostNarrow = 1.2f;
 /// Where the points beyond a crease lie up to so many spacings off a plane, they are one plane, and the cell
@@ -241,13 +243,14 @@ class SiteEstimator {
         if (side && narrow) area = std::min(area, kMostNarrow * spacing * spacing);
         surface_.areas[site] = area;
         const bool creased = side && side->first.distance > 0;
+        bool at_border = creased && side->first.distance < kOutermost * rim;
         if (!creased && outward) {
             if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
-            add_border(site, *outward, around, fit, rim);
+            at_border = add_border(site, *outward, around, fit, rim);
         }
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
         if (whole != glm::vec3(0.0f)) {
-            sides_.push_back({site, fit.normal});
+            sides_.push_back({site, fit.normal, at_border ? side->layered : glm::vec3(0.0f)});
             if (creased) lines_.push_back(line_at(site, *side, spacing));
         }
         if (apart) apart_.push_back(site);
@@ -353,14 +356,16 @@ class SiteEstimator {
         return radius;
     }
 
-    /// `spacing`: of the points if the neighbours fill half a disc.
-    void add_border(uint32_t site, const glm::vec3& outward, ChunkNeighbours::Surroundings& around,
+    /// Gives a site the border of its surface, if there is one. `spacing`: of the points if the neighbours
+    /// fill half a disc. Returns whether the site is one of the outermost.
+    bool add_border(uint32_t site, const glm::vec3& outward, ChunkNeighbours::Surroundings& around,
                     const SurfaceFit& fit, float spacing) {
         const auto view = around.around(kBorderLook * spacing);
         const float level = kRoughLevel * std::sqrt(fit.variance) + kFlatLevel * spacing;
         const Rim rim{tangent_frame(fit.normal), outward, spacing, level};
-        if (const auto border = find_border(view.tile, view.centre, rim))
-            lines_.push_back({site, fit.normal, border->toward, border->distance, border->beyond});
+        const auto border = find_border(view.tile, view.centre, rim);
+        if (border) lines_.push_back({site, fit.normal, border->toward, border->distance, border->beyond});
+        return border && border->distance < kOutermost * spacing;
     }
 
     void connect(uint32_t site, const Patch& nearest, const Patch* wide, const glm::vec3& normal) {

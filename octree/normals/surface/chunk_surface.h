@@ -34,6 +34,8 @@ struct CrowdedSite {
 struct SideNormal {
     uint32_t site = 0;
     glm::vec3 normal{0.0f};  ///< the sign is arbitrary
+    /// Of a site at the border of one face of a board: unit, along the normal, to the other face; else zero.
+    glm::vec3 layered{0.0f};
 };
 
 /// The line at which a site's surface ends: at a crease or a border.

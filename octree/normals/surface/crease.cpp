@@ -246,7 +246,6 @@ std::optional<size_t> find_creases(const Patch& patch, const Refit& own, float s
     const glm::dvec3 middle = middle_of(own.own);
     Patch rest;
     keep_beside(patch, own.slab, rest);
-    bool layered = false;
     const float seed_limit = std::max(kSeedLimit * spacing, kSeedDeviations * std::sqrt(side.variance));
     for (int plane = 0; plane < kMostPlanes && side.second.distance == 0; ++plane) {
         const size_t left = rest.count;
@@ -257,13 +256,14 @@ std::optional<size_t> find_creases(const Patch& patch, const Refit& own, float s
         if (!crease) {
             const glm::vec3 n(other->plane.normal);
             const double apart = glm::dot(other->plane.normal, middle_of(other->points) - middle);
-            layered |= std::abs(glm::dot(n, glm::vec3(side.plane.normal))) > kParallel &&
-                       std::abs(apart) > kLayersApart * spacing;
+            const glm::vec3 own(side.plane.normal);
+            if (std::abs(glm::dot(n, own)) > kParallel && std::abs(apart) > kLayersApart * spacing)
+                side.layered = apart * glm::dot(n, own) > 0 ? own : -own;
             continue;
         }
         (side.first.distance > 0 ? side.second : side.first) = *crease;
     }
-    if (side.first.distance == 0 && !layered) {
+    if (side.first.distance == 0 && side.layered == glm::vec3(0.0f)) {
         const Moments all = moments_of_slab(patch, own.slab, true);
         const auto crease = crease_with({plane_of(all), all, 0}, side, middle, spacing);
         if (!crease) return std::nullopt;

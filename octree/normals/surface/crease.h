@@ -28,6 +28,9 @@ struct Side {
     Range layer{0, 0};    ///< their heights over the tangent plane through the point
     Crease first;         ///< the nearer of the creases at which the side ends
     Crease second;        ///< another one, as at a corner or on a narrow face
+    /// Unit, along the plane's normal: to a parallel plane nearby, such as the other face of a board; else
+    /// zero.
+    glm::vec3 layered{0.0f};
 };
 
 /// Finds the side of a crease on which a point lies. `whole`: the fit without creases. `spacing`: the

@@ -65,6 +65,24 @@ TEST(NarrowFaces, TheEdgeOfABoardHasItsNormal) {
     EXPECT_GE(right, points * 7 / 10) << "a quarter without planes through three points";
 }
 
+/// Points at the rim of the edge lie in a face, too, as far as noise tells. Their stations are behind that
+/// face, so they are the edge's: with the face's plane, seen from behind, they were dark half-moons above it.
+TEST(NarrowFaces, PointsOfTheEdgeHaveNoFaceThatTheirStationDoesNotSee) {
+    const auto [cloud, options, top] = upright_board();
+    const Estimate found = estimate(cloud, options);
+    size_t points = 0, wrong = 0;
+    for (size_t i = top; i < cloud.points.size(); ++i) {
+        const glm::dvec3& p = cloud.points[i];
+        const bool behind = cloud.stations[i] == 1 ? p.y < 8 * kNoise : p.y > kThick - 8 * kNoise;
+        if (!is_inside(p) || !behind || found.normals[i] == glm::vec3(0.0f)) continue;
+        ++points;
+        wrong += std::abs(found.normals[i].y) > 0.9f;
+    }
+    std::printf("%zu of %zu points have the plane of a face\n", wrong, points);
+    EXPECT_GE(points, 10u);
+    EXPECT_LE(wrong, points / 4);
+}
+
 /// The faces beside the edge end where it begins: their discs do not stand over it.
 TEST(NarrowFaces, TheFacesOfABoardEndAtItsEdge) {
     const auto [cloud, options, top] = upright_board();
