@@ -34,11 +34,6 @@ Spacing spacing_of(const BakeInput& input, std::span<const Surfel> surfels) {
     return {least, std::max(least, most)};
 }
 
-/// Returns a part of the entry points; null if there is none with this number.
-const CutOffPart* find_part(const LightPaths& paths, size_t number) {
-    return number < paths.parts.size() ? &paths.parts[number] : nullptr;
-}
-
 /// Makes coarse paths first, which are usable after a moment, if anything shows them; then those that were
 /// asked for.
 class PathsPrecomputation final : public Precomputation {
@@ -142,13 +137,12 @@ class PathsPrecomputation final : public Precomputation {
         for (uint32_t i = 0; i < input.cut.surfels.size(); ++i)
             if (tracing::has_disc(input.cut.surfels[i])) discs.push_back(i);
         auto bake = std::make_shared<PathsBake>();
-        for (const Side side : paths.entries.sides) {
-            const CutOffPart* part =
-                side / 2 < discs.size() ? nullptr : find_part(paths, side / 2 - discs.size());
-            const Side of_disc = part ? part->side : side;
-            if (of_disc / 2 >= discs.size()) return rejected("paths", "an entry point is on no surfel");
-            const Surfel& s = input.cut.surfels[discs[of_disc / 2]];
-            bake->entries.push_back({part ? part->position : s.position, of_disc % 2 ? -s.normal : s.normal,
+        const EntryPoints& entries = paths.entries;
+        for (size_t i = 0; i < entries.sides.size(); ++i) {
+            const Side side = entries.sides[i];
+            if (side / 2 >= discs.size()) return rejected("paths", "an entry point is on no surfel");
+            const Surfel& s = input.cut.surfels[discs[side / 2]];
+            bake->entries.push_back({place_on(s, entries.places[i]), side % 2 ? -s.normal : s.normal,
                                      s.radius, s.albedo, s.material});
         }
         bake->near = PointCells(paths.points, kPixelReach);
@@ -156,7 +150,9 @@ class PathsPrecomputation final : public Precomputation {
         bake->far = PointCells(paths.points, kFarReach);
         bake->paths = std::move(paths);
         bake->seed = input.settings[kSeed];
-        bake->sharing = find_sharing(*bake);
+        const Sharing about = find_sharing(*bake);
+        if (surfaces_) bake->paths.hidden = find_hidden(*bake, about, surfaces_->tracer());
+        bake->sharing = without(about, bake->paths.hidden);
         bake_ = std::move(bake);
         return {};
     }
@@ -175,7 +171,7 @@ constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info,
 
 const Precomputes kPathsPrecomputes{
     .make = []() -> std::unique_ptr<Precomputation> { return std::make_unique<PathsPrecomputation>(); },
-    .version = 5,
+    .version = 6,
     .options = kOfBake};
 
 }  // namespace lucarne::gi::paths

@@ -16,6 +16,12 @@
 
 namespace lucarne::gi::paths {
 
+/// Two gathering points, by their numbers.
+struct PointPair {
+    uint32_t first = 0, second = 0;
+    bool operator==(const PointPair&) const = default;
+};
+
 /// What does not change while lights, cameras and materials do. Surfels are not needed any more.
 struct LightPaths {
     std::vector<GatheringPoint> points;
@@ -23,9 +29,9 @@ struct LightPaths {
     std::vector<uint32_t> rays;  ///< of each point: the groups whose light they bring; kNone: none
     Groups groups;               ///< leaf_of is empty
     EntryPoints entries;
-    /// Entry points on parts of discs have the numbers of these, counted as surfels after the discs.
-    std::vector<CutOffPart> parts;
     Links links;
+    /// Gathering points that are about each other but do not see each other.
+    std::vector<PointPair> hidden;
     /// Of each entry point: the leaves of the kVertices - 1 vertices of its photon path.
     std::vector<uint32_t> photons;
 };

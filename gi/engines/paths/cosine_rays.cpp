@@ -18,6 +18,12 @@ namespace {
 /// Rays along the surface would have cross sections without end.
 constexpr float kLeastCosine = 0.1f;
 
+/// Returns the width of a ray's cross section a metre from its start, m.
+float width_of(const RayStart& start, const glm::vec3& direction, uint32_t count) {
+    const float cosine = std::max(glm::dot(direction, start.normal), kLeastCosine);
+    return std::sqrt(kPi / (static_cast<float>(count) * cosine));
+}
+
 }  // namespace
 
 RayStart start_at(const SideSurfels& surfels, Side side) {
@@ -48,9 +54,15 @@ RayHit follow(const Surfaces& surfaces, const RayStart& start, const glm::vec3& 
     const auto hit = surfaces.tracer().first_hit(origin, direction);
     distance = hit ? hit->distance : std::numeric_limits<float>::infinity();
     if (!hit) return {};
-    const float cosine = std::max(glm::dot(direction, start.normal), kLeastCosine);
     return {surfaces.side_of(*hit, origin + direction * hit->distance),
-            distance * std::sqrt(kPi / (static_cast<float>(count) * cosine))};
+            distance * width_of(start, direction, count)};
+}
+
+glm::vec3 place_of(const RayStart& start, uint64_t seed, uint64_t stream, uint32_t i, uint32_t count,
+                   const RayHit& hit) {
+    const glm::vec3 direction = cosine_direction(start.normal, even_point(i, seed, stream));
+    return tracing::offset_origin(start.position, start.normal, start.radius) +
+           direction * (hit.width / width_of(start, direction, count));
 }
 
 float trace_rays(const Surfaces& surfaces, const RayStart& start, uint64_t seed, uint64_t stream,

@@ -39,6 +39,10 @@ glm::dvec2 even_point(uint32_t i, uint64_t seed, uint64_t stream);
 RayHit follow(const Surfaces& surfaces, const RayStart& start, const glm::vec3& direction, uint32_t count,
               float& distance);
 
+/// Returns the place that ray `i` of trace_rays() with these arguments met, by its width.
+glm::vec3 place_of(const RayStart& start, uint64_t seed, uint64_t stream, uint32_t i, uint32_t count,
+                   const RayHit& hit);
+
 /// Traces hits.size() even rays of a point and returns the harmonic mean of their lengths, m; rays that hit
 /// nothing count as infinitely long.
 float trace_rays(const Surfaces& surfaces, const RayStart& start, uint64_t seed, uint64_t stream,

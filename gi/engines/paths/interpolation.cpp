@@ -117,6 +117,49 @@ Sharing find_sharing(const PathsBake& bake) {
     });
 }
 
+std::vector<PointPair> find_hidden(const PathsBake& bake, const Sharing& sharing,
+                                   const tracing::SurfelTracer& tracer) {
+    const std::vector<GatheringPoint>& points = bake.paths.points;
+    const auto above = [&](uint32_t i) {
+        return tracing::offset_origin(points[i].position, points[i].normal, points[i].radius);
+    };
+    std::vector<std::vector<PointPair>> of_pieces((points.size() + kPlacesAPiece - 1) / kPlacesAPiece);
+    parallel_ranges(of_pieces.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t piece = begin; piece < end; ++piece)
+            for (size_t i = piece * kPlacesAPiece; i < std::min((piece + 1) * kPlacesAPiece, points.size());
+                 ++i)
+                for (const PointShare& share : sharing.of(i)) {
+                    const auto own = static_cast<uint32_t>(i);
+                    if (share.point != own && tracer.occluded(above(own), above(share.point)))
+                        of_pieces[piece].push_back({own, share.point});
+                }
+    });
+    std::vector<PointPair> hidden;
+    for (const auto& piece : of_pieces) hidden.insert(hidden.end(), piece.begin(), piece.end());
+    return hidden;
+}
+
+Sharing without(const Sharing& sharing, std::span<const PointPair> hidden) {
+    Sharing seen;
+    for (uint32_t i = 0; i + 1 < sharing.first.size(); ++i) {
+        const size_t begin = seen.shares.size();
+        seen.first.push_back(static_cast<uint32_t>(begin));
+        size_t own = 0;
+        while (own < hidden.size() && hidden[own].first == i) ++own;
+        float sum = 0;
+        for (const PointShare& share : sharing.of(i)) {
+            const auto is_it = [&](const PointPair& pair) { return pair.second == share.point; };
+            if (std::ranges::any_of(hidden.first(own), is_it)) continue;
+            seen.shares.push_back(share);
+            sum += share.share;
+        }
+        for (size_t k = begin; k < seen.shares.size(); ++k) seen.shares[k].share /= sum;
+        hidden = hidden.subspan(own);
+    }
+    seen.first.push_back(static_cast<uint32_t>(seen.shares.size()));
+    return seen;
+}
+
 std::vector<glm::vec3> smooth(const PathsBake& bake, std::span<const glm::vec3> irradiance) {
     std::vector<glm::vec3> smoothed(irradiance.size());
     for (size_t i = 0; i < smoothed.size(); ++i) smoothed[i] = irradiance_of(bake.sharing.of(i), irradiance);

@@ -10,6 +10,7 @@
 
 #include "gi/engines/paths/bake.h"
 #include "gi/host_frame.h"
+#include "gi/tracing/surfel_tracer.h"
 
 namespace lucarne::gi::paths {
 
@@ -46,6 +47,12 @@ Sharing find_sharing(const PathsBake& bake, size_t places,
                      const std::function<bool(PointFinder&, size_t)>& find);
 /// Returns which points each gathering point shares its light with: those about it, as pixels do.
 Sharing find_sharing(const PathsBake& bake);
+/// Returns which of these shares belong to points that something hides from each other: by rays, since
+/// walls() of points are coarse.
+std::vector<PointPair> find_hidden(const PathsBake& bake, const Sharing& sharing,
+                                   const tracing::SurfelTracer& tracer);
+/// Leaves out shares of hidden points. `hidden`: of find_hidden(), in its order.
+Sharing without(const Sharing& sharing, std::span<const PointPair> hidden);
 
 /// Lets gathering points share their light: it takes the blotches of their few rays away.
 std::vector<glm::vec3> smooth(const PathsBake& bake, std::span<const glm::vec3> irradiance);

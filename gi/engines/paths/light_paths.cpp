@@ -6,17 +6,24 @@
 #include <utility>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/packing.hpp>
 
 #include "gi/engines/paths/cosine_rays.h"
 #include "gi/lighting/area_points.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/tracing/light_sampling.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
+#include "octree/tree/key.h"
 
 namespace lucarne::gi::paths {
 namespace {
 
-constexpr size_t kOriginsAtOnce = 2048, kOriginsAPiece = 16, kPathsAPiece = 1024;
+constexpr size_t kOriginsAtOnce = 2048, kOriginsAPiece = 16, kPathsAPiece = 1024, kLeavesAPiece = 1024;
+/// Places that are tried for each entry point, and in how many steps they are ordered along a curve.
+constexpr size_t kTried = 8;
+constexpr float kCurve = 1023;
 
 /// Returns which of these sides lies at a share 0..1 of the area of all, in their order.
 class ByArea {
@@ -38,44 +45,152 @@ class ByArea {
     double total_ = 0;
 };
 
+/// A place on a side.
+struct Place {
+    Side side = kNone;
+    glm::vec3 position{0.0f};
+};
+
+/// The places of leaves that the rays of gathering points met. Rays count by the area for which their point
+/// stands: there are many points in corners, and most of what they see no one else does.
+class MetPlaces {
+ public:
+    /// `points`: with their rays, chosen with `seed`. Those of leaves that are not `used` do not count. The
+    /// references must outlive it.
+    MetPlaces(const GroupBuilder& builder, std::span<const uint8_t> used, const PointChooser::State& points,
+              uint64_t seed)
+        : leaf_of_(builder.leaf_of()), used_(used), points_(points), seed_(seed), met_(builder.leaves(), 0) {
+        weights_.assign(builder.leaves(), 0);
+        each([&](size_t hit, uint32_t leaf) {
+            ++met_[leaf];
+            weights_[leaf] += weight_of(hit);
+        });
+    }
+    /// Returns so many of each leaf's places, even in the leaf; none where there are none.
+    std::vector<std::vector<Place>> choose(std::span<const uint32_t> own) const {
+        std::vector<std::vector<Place>> chosen = choose_some(own);
+        parallel_ranges(chosen.size(), kLeavesAPiece, [&](size_t begin, size_t end) {
+            for (size_t leaf = begin; leaf < end; ++leaf) make_even(chosen[leaf]);
+        });
+        return chosen;
+    }
+
+ private:
+    template <class Visit>
+    void each(const Visit& visit) const {
+        for (size_t hit = 0; hit < points_.hits.size(); ++hit) {
+            const Side side = points_.hits[hit].side;
+            if (side != kNone && used_[leaf_of_[side]]) visit(hit, leaf_of_[side]);
+        }
+    }
+    size_t rays() const { return points_.hits.size() / points_.points.size(); }
+    double weight_of(size_t hit) const {
+        const float reach = points_.points[hit / rays()].reach;
+        return double{reach} * reach;
+    }
+    Place place_of(size_t hit) const {
+        const GatheringPoint& point = points_.points[hit / rays()];
+        return {points_.hits[hit].side, paths::place_of({point.position, point.normal, point.radius}, seed_,
+                                                        point.side, static_cast<uint32_t>(hit % rays()),
+                                                        static_cast<uint32_t>(rays()), points_.hits[hit])};
+    }
+    /// Returns kTried times as many, at the middles of equal parts of the weight of all in their order, which
+    /// looks random.
+    std::vector<std::vector<Place>> choose_some(std::span<const uint32_t> own) const {
+        std::vector<std::vector<Place>> some(met_.size());
+        std::vector<uint32_t> left = met_;
+        std::vector<double> gone(met_.size(), 0);
+        each([&](size_t hit, uint32_t leaf) {
+            const size_t count = kTried * std::min(own[leaf], met_[leaf]);
+            gone[leaf] += weight_of(hit);
+            const bool is_last = --left[leaf] == 0;
+            const double due = is_last ? static_cast<double>(count)
+                                       : gone[leaf] / weights_[leaf] * static_cast<double>(count) - .5;
+            if (static_cast<double>(some[leaf].size()) >= due) return;
+            const Place place = place_of(hit);
+            while (some[leaf].size() < count && static_cast<double>(some[leaf].size()) < due)
+                some[leaf].push_back(place);
+        });
+        return some;
+    }
+    /// Keeps one of kTried each along a curve through space.
+    static void make_even(std::vector<Place>& places) {
+        glm::vec3 low(3e38f), high(-3e38f);
+        for (const Place& place : places) {
+            low = glm::min(low, place.position);
+            high = glm::max(high, place.position);
+        }
+        const glm::vec3 size = high - low;
+        const float edge = std::max({size.x, size.y, size.z, 1e-6f});
+        std::vector<std::pair<uint64_t, Place>> ordered;
+        for (const Place& place : places) {
+            const glm::vec3 at = (place.position - low) * (kCurve / edge);
+            ordered.emplace_back(octree::morton(static_cast<uint64_t>(at.x), static_cast<uint64_t>(at.y),
+                                                static_cast<uint64_t>(at.z)),
+                                 place);
+        }
+        std::ranges::stable_sort(ordered, {}, [](const auto& item) { return item.first; });
+        places.clear();
+        for (size_t i = kTried / 2; i < ordered.size(); i += kTried) places.push_back(ordered[i].second);
+    }
+
+    std::span<const uint32_t> leaf_of_;
+    std::span<const uint8_t> used_;
+    const PointChooser::State& points_;
+    uint64_t seed_;
+    std::vector<uint32_t> met_;  ///< of each leaf: its rays
+    std::vector<double> weights_;
+};
+
 }  // namespace
+
+uint32_t encode_place(const Surfel& disc, const glm::vec3& place) {
+    glm::vec3 tangent, bitangent;
+    tracing::frame_of(disc.normal, tangent, bitangent);
+    const glm::vec3 offset = (place - disc.position) / disc.radius;
+    return glm::packSnorm2x16({glm::dot(offset, tangent), glm::dot(offset, bitangent)});
+}
+
+glm::vec3 place_on(const Surfel& disc, uint32_t code) {
+    glm::vec3 tangent, bitangent;
+    tracing::frame_of(disc.normal, tangent, bitangent);
+    const glm::vec2 offset = disc.radius * glm::unpackSnorm2x16(code);
+    return disc.position + offset.x * tangent + offset.y * bitangent;
+}
 
 EntryPoints choose_entries(const Surfaces& surfaces, const GroupBuilder& builder,
                            std::span<const float> areas, std::span<const uint8_t> used,
-                           std::span<const RayHit> hits, uint64_t count) {
+                           const PointChooser::State& points, uint64_t seed, uint64_t count) {
     EntryPoints entries;
-    const std::span<const uint32_t> leaf_of = builder.leaf_of();
+    const MetPlaces met(builder, used, points, seed);
+    const auto add = [&](Side side, const glm::vec3& place) {
+        const Side of_disc =
+            surfaces.is_part(side) ? surfaces.parts()[side / 2 - surfaces.discs()].side : side;
+        entries.sides.push_back(of_disc);
+        entries.places.push_back(encode_place(surfaces.tracer().surfels()[of_disc / 2], place));
+    };
     double total = 0;
-    std::vector<uint32_t> met(builder.leaves(), 0);
-    for (const RayHit& hit : hits)
-        if (hit.side != kNone) ++met[leaf_of[hit.side]];
     for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf)
         if (used[leaf]) total += areas[leaf];
+    std::vector<uint32_t> own(builder.leaves(), 0);
+    for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf) {
+        if (!used[leaf]) continue;
+        const double share = total > 0 ? areas[leaf] / total : 0;
+        own[leaf] = static_cast<uint32_t>(std::clamp(std::round(share * static_cast<double>(count)), 1.0,
+                                                     static_cast<double>(builder.sides_of(leaf).size())));
+    }
+    const std::vector<std::vector<Place>> places = met.choose(own);
     for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf) {
         entries.first.push_back(static_cast<uint32_t>(entries.sides.size()));
-        if (!used[leaf]) continue;
-        const std::span<const Side> sides = builder.sides_of(leaf);
-        const double share = total > 0 ? areas[leaf] / total : 0, most = static_cast<double>(sides.size());
-        const auto own =
-            static_cast<uint32_t>(std::clamp(std::round(share * static_cast<double>(count)), 1.0, most));
-        if (met[leaf] > 0) {
-            entries.sides.insert(entries.sides.end(), std::min(own, met[leaf]), kNone);
-            continue;
+        for (const Place& place : places[leaf]) add(place.side, place.position);
+        if (own[leaf] == 0 || !places[leaf].empty()) continue;
+        const ByArea centres(surfaces, builder.sides_of(leaf));
+        for (uint32_t i = 0; i < own[leaf]; ++i) {
+            const Side side = centres.at((i + .5) / own[leaf]);
+            add(side, surfaces.surfels()[side / 2].position);
         }
-        const ByArea places(surfaces, sides);
-        for (uint32_t i = 0; i < own; ++i) entries.sides.push_back(places.at((i + .5) / own));
     }
     entries.first.push_back(static_cast<uint32_t>(entries.sides.size()));
-    // Every so many of the hits of a leaf, in their order.
-    std::vector<uint32_t> gone(builder.leaves(), 0);
-    for (const RayHit& hit : hits) {
-        if (hit.side == kNone || !used[leaf_of[hit.side]]) continue;
-        const uint32_t leaf = leaf_of[hit.side], first = entries.first[leaf];
-        const uint64_t own = entries.first[leaf + 1] - first, number = gone[leaf]++;
-        const uint64_t place = (2 * number + 1) * own / (2 * uint64_t{met[leaf]});
-        if ((2 * number + 1) * own % (2 * uint64_t{met[leaf]}) < 2 * own)
-            entries.sides[first + place] = hit.side;
-    }
     return entries;
 }
 
@@ -183,11 +298,13 @@ void trace_photons(const Surfaces& surfaces, std::span<const uint32_t> leaf_of, 
         for (size_t i = begin; i < end; ++i) {
             const size_t entry = first + i;
             Side side = entries.sides[entry];
+            RayStart start = start_at(surfaces.surfels(), side);
+            start.position = place_on(surfaces.tracer().surfels()[side / 2], entries.places[entry]);
             for (uint32_t vertex = 1; vertex < kVertices; ++vertex) {
                 uint32_t& leaf = leaves[i * (kVertices - 1) + vertex - 1];
                 leaf = kNone;
                 if (side == kNone) continue;
-                const RayStart start = start_at(surfaces.surfels(), side);
+                if (vertex > 1) start = start_at(surfaces.surfels(), side);
                 // Entry points stand beside each other in their order, so consecutive points are even
                 // there as well.
                 const glm::dvec2 at = even_point(static_cast<uint32_t>(entry), seed, vertex);

@@ -8,26 +8,34 @@
 
 #include <glm/vec3.hpp>
 
+#include "gi/engines/paths/gathering_points.h"
 #include "gi/engines/paths/groups.h"
 #include "gi/engines/paths/sides.h"
 #include "gi/engines/paths/surfaces.h"
 
 namespace lucarne::gi::paths {
 
-/// The entry points of Yue et al. 2007, section 5.1: sides at which the light of lamps is computed. Each
+/// The entry points of Yue et al. 2007, section 5.1: places at which the light of lamps is computed. Each
 /// stands for an equal part of its leaf's area, so that the areas of all add up to that of the surface.
 struct EntryPoints {
-    std::vector<Side> sides;
-    std::vector<uint32_t> first;  ///< of each leaf, and the end
+    std::vector<Side> sides;       ///< of discs
+    std::vector<uint32_t> places;  ///< of each: place_on()
+    std::vector<uint32_t> first;   ///< of each leaf, and the end
     bool operator==(const EntryPoints&) const = default;
 };
+/// Returns the code of a place on a disc, by which it is off by less than 1e-4 radii.
+uint32_t encode_place(const Surfel& disc, const glm::vec3& place);
+/// Returns the place on a disc that has this code.
+glm::vec3 place_on(const Surfel& disc, uint32_t code);
 
 /// Chooses about `count` entry points, in proportion to area, but at least one in each leaf that `used`
-/// names, and none in others. They are taken evenly from the hits in the leaf: what of it a room sees may be
-/// darker than the rest, as in the reveal of a window. In leaves that no hit is in they are spread by area.
+/// names, and none in others. They are places that the rays of gathering points met, spread evenly over
+/// these: what of a leaf a room sees may be darker than the rest, as in the reveal of a window, and of discs
+/// that overlap it sees parts. Rays count by the area for which their point stands. In leaves that no ray met
+/// they are centres of discs, spread by area. `points`: with their rays, chosen with `seed`.
 EntryPoints choose_entries(const Surfaces& surfaces, const GroupBuilder& builder,
                            std::span<const float> areas, std::span<const uint8_t> used,
-                           std::span<const RayHit> hits, uint64_t count);
+                           const PointChooser::State& points, uint64_t seed, uint64_t count);
 
 /// Rays of a place that tell how the light of others reaches it.
 inline constexpr uint32_t kLinks = 64;

@@ -41,8 +41,8 @@ void PathBuilder::join_groups() {
 }
 
 void PathBuilder::make_entries() {
-    paths_.entries = choose_entries(surfaces_, *groups_, paths_.groups.area, links_->used(),
-                                    chooser_.state().hits, plan_.entries);
+    paths_.entries = choose_entries(surfaces_, *groups_, paths_.groups.area, links_->used(), chooser_.state(),
+                                    plan_.seed, plan_.entries);
     paths_.links = links_->take();
     paths_.photons.assign(paths_.entries.sides.size() * (kVertices - 1), kNone);
 }
@@ -56,25 +56,9 @@ bool PathBuilder::make_photons() {
 }
 
 LightPaths PathBuilder::take() {
-    keep_parts();
     paths_.points = chooser_.take().points;
     paths_.groups.leaf_of.clear();
     return std::move(paths_);
-}
-
-/// Keeps those parts of discs on which entry points are.
-void PathBuilder::keep_parts() {
-    std::vector<uint32_t> kept(surfaces_.parts().size(), kNone);
-    const auto discs = static_cast<uint32_t>(surfaces_.discs());
-    for (Side& side : paths_.entries.sides) {
-        if (!surfaces_.is_part(side)) continue;
-        uint32_t& number = kept[side / 2 - discs];
-        if (number == kNone) {
-            number = static_cast<uint32_t>(paths_.parts.size());
-            paths_.parts.push_back(surfaces_.parts()[side / 2 - discs]);
-        }
-        side = 2 * (discs + number);
-    }
 }
 
 double PathBuilder::share() const {

@@ -42,8 +42,6 @@ class PathBuilder {
     bool restore(PointChooser::State state) { return chooser_.restore(std::move(state)); }
 
  private:
-    void keep_parts();
-
     const Surfaces& surfaces_;
     PathPlan plan_;
     PointChooser chooser_;

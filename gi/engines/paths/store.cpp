@@ -72,10 +72,11 @@ BakeSections write_paths(const LightPaths& paths) {
     put(sections, "links of leaves", paths.links.origin_of);
     put(sections, "open links", paths.links.open);
     put(sections, "first open links", paths.links.first_open);
+    put(sections, "hidden points", paths.hidden);
     put(sections, "photons", paths.photons);
     put(sections, "entries", paths.entries.sides);
     put(sections, "entries of leaves", paths.entries.first);
-    put(sections, "parts of entries", paths.parts);
+    put(sections, "places of entries", paths.entries.places);
     put(sections, "parents", groups.parent);
     put(sections, "areas", groups.area);
     put(sections, "cells", groups.cell);
@@ -94,10 +95,11 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     LUCARNE_TRY(take(sections, "links of leaves", paths.links.origin_of));
     LUCARNE_TRY(take(sections, "open links", paths.links.open));
     LUCARNE_TRY(take(sections, "first open links", paths.links.first_open));
+    LUCARNE_TRY(take(sections, "hidden points", paths.hidden));
     LUCARNE_TRY(take(sections, "photons", paths.photons));
     LUCARNE_TRY(take(sections, "entries", paths.entries.sides));
     LUCARNE_TRY(take(sections, "entries of leaves", paths.entries.first));
-    LUCARNE_TRY(take(sections, "parts of entries", paths.parts));
+    LUCARNE_TRY(take(sections, "places of entries", paths.entries.places));
     LUCARNE_TRY(take(sections, "parents", groups.parent));
     LUCARNE_TRY(take(sections, "areas", groups.area));
     LUCARNE_TRY(take(sections, "cells", groups.cell));
@@ -110,6 +112,10 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     if (!is_sound(groups)) return damaged("children");
     const auto is_point = [](const GatheringPoint& p) { return p.reach > 0 && p.is_finite(); };
     if (!std::ranges::all_of(paths.points, is_point)) return damaged("points");
+    if (!std::ranges::all_of(paths.hidden, [&](const PointPair& pair) {
+            return pair.first < paths.points.size() && pair.second < paths.points.size();
+        }))
+        return damaged("hidden points");
     if (paths.rays.size() != paths.points.size() * rays_a_point ||
         !all_below(paths.rays, groups.count(), true))
         return damaged("rays");
@@ -119,12 +125,9 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
         !all_below(links.origin_of, links.groups.size() / kLinks, true) ||
         !are_ranges(links.first_open, links.groups.size() / kLinks, links.open.size()))
         return damaged("links");
-    if (!are_ranges(paths.entries.first, groups.leaves, paths.entries.sides.size()))
+    if (!are_ranges(paths.entries.first, groups.leaves, paths.entries.sides.size()) ||
+        paths.entries.places.size() != paths.entries.sides.size())
         return damaged("entries");
-    if (!std::ranges::all_of(paths.parts, [](const CutOffPart& part) {
-            return std::isfinite(glm::dot(part.position, part.position));
-        }))
-        return damaged("parts of entries");
     if (paths.photons.size() != paths.entries.sides.size() * (kVertices - 1) ||
         !all_below(paths.photons, groups.leaves, true))
         return damaged("photons");

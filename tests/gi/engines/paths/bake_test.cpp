@@ -135,6 +135,33 @@ TEST(PathsBake, EntryPointsStandForEqualPartsOfTheirGroup) {
     for (const Side side : entries.sides) EXPECT_EQ(side % 2, 0u);
 }
 
+TEST(PathsBake, PointsDoNotShareLightThroughWhatStandsBetweenThem) {
+    std::vector<Surfel> surfels = scenes::closed_box(1, 40, glm::vec3(.5f));
+    // A fence, whose boards are too narrow for the walls of points.
+    for (float y = .05f; y < 1; y += .1f)
+        scenes::add_rectangle(surfels, {.5f, y, 0}, .05f * kY, .3f * kZ, 8, glm::vec3(.5f));
+    const auto tracer = tracer_of(surfels);
+    const auto bake = bake_of(input_of(std::move(surfels), 80, 64));
+    const auto above = [&](uint32_t i) {
+        const GatheringPoint& point = bake->paths.points[i];
+        return tracing::offset_origin(point.position, point.normal, point.radius);
+    };
+    size_t shares = 0;
+    for (uint32_t i = 0; i < bake->paths.points.size(); ++i) {
+        float sum = 0;
+        for (const PointShare& share : bake->sharing.of(i)) {
+            if (share.point != i) {
+                EXPECT_FALSE(tracer->occluded(above(i), above(share.point))) << i << " " << share.point;
+                ++shares;
+            }
+            sum += share.share;
+        }
+        EXPECT_NEAR(sum, 1, 1e-5);
+    }
+    EXPECT_GT(shares, 100u);
+    EXPECT_GT(bake->paths.hidden.size(), 0u);
+}
+
 TEST(PathsBake, OfScenesWithoutSurfacesIsEmpty) {
     for (const auto& surfels : {std::vector<Surfel>{}, std::vector<Surfel>(3, Surfel{}),
                                 std::vector<Surfel>{{kO, kZ, glm::vec3(.5f), .1f, .01f, 0}}}) {
