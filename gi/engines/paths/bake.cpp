@@ -12,6 +12,7 @@
 #include "gi/engines/paths/options.h"
 #include "gi/engines/paths/path_builder.h"
 #include "gi/engines/paths/store.h"
+#include "io/core/log.h"
 
 namespace lucarne::gi::paths {
 namespace {
@@ -45,27 +46,29 @@ class PathsPrecomputation final : public Precomputation {
             finished_ = true;
             return {};
         }
-        LUCARNE_ASSIGN(PointChooser::State state, read_points(sections));
-        LUCARNE_TRY(start(input));
-        start_whole(input);
-        if (!builder_->restore(std::move(state))) return rejected("paths", "the points are damaged");
-        is_restored_ = true;
+        LUCARNE_ASSIGN(restored_, read_points(sections));
         return {};
     }
 
     std::vector<Step<const BakeInput>> steps(const BakeInput& from) override {
         std::vector<Step<const BakeInput>> steps;
-        if (!is_restored_) {
-            steps.push_back({"surfels", [this](const BakeInput& input) -> Result<StepResult> {
-                                 LUCARNE_TRY(start(input));
-                                 if (input.is_shown)
-                                     start_coarse(input);
-                                 else
-                                     start_whole(input);
-                                 return StepResult::done;
-                             }});
-        }
-        if (!is_restored_ && from.is_shown) {
+        const bool is_coarse_first = !restored_ && from.is_shown;
+        steps.push_back({"surfels", [this](const BakeInput& input) -> Result<StepResult> {
+                             LUCARNE_TRY(start(input));
+                             return StepResult::done;
+                         }});
+        steps.push_back({"parts of discs", [this](const BakeInput&) -> Result<StepResult> {
+                             return surfaces_->find_parts() ? StepResult::again : StepResult::done;
+                         }});
+        steps.push_back(
+            {"first points", [this, is_coarse_first](const BakeInput& input) -> Result<StepResult> {
+                 if (is_coarse_first)
+                     start_coarse(input);
+                 else
+                     start_whole(input);
+                 return StepResult::done;
+             }});
+        if (is_coarse_first) {
             add_steps(steps);
             steps.push_back({"snapshot", [this](const BakeInput& input) -> Result<StepResult> {
                                  LUCARNE_TRY(publish(input, builder_->take()));
@@ -95,7 +98,8 @@ class PathsPrecomputation final : public Precomputation {
     BakeSections save() const override {
         if (finished_) return write_paths(bake_->paths);
         // Coarse paths are soon made again.
-        return is_whole_ ? write_points(builder_->points()) : write_points({.spacing = spacing_});
+        if (is_whole_) return write_points(builder_->points());
+        return write_points({.spacing = spacing_, .parts = surfaces_->parts_key()});
     }
 
  private:
@@ -129,6 +133,11 @@ class PathsPrecomputation final : public Precomputation {
         is_whole_ = true;
         builder_.emplace(*surfaces_, PathPlan{spacing_, input.settings[kGatherRays],
                                               input.settings[kEntryPoints], input.settings[kSeed]});
+        if (!restored_) return;
+        // A processor with other vector units may have found other parts.
+        if (!builder_->restore(std::move(*restored_)))
+            log::info("paths: kept points are of other parts of discs, or damaged; they are chosen again");
+        restored_.reset();
     }
     /// Makes the snapshot: reads what entry points reflect from the surfels, so that colours and materials
     /// may change without any ray.
@@ -157,10 +166,11 @@ class PathsPrecomputation final : public Precomputation {
         return {};
     }
 
-    std::unique_ptr<const Surfaces> surfaces_;
+    std::unique_ptr<Surfaces> surfaces_;
     Spacing spacing_;  ///< asked for
     std::optional<PathBuilder> builder_;
-    bool is_whole_ = false, is_restored_ = false, finished_ = false;
+    std::optional<PointChooser::State> restored_;  ///< what was kept of unfinished work
+    bool is_whole_ = false, finished_ = false;
     std::shared_ptr<const PathsBake> bake_;
 };
 

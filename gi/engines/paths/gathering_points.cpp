@@ -35,6 +35,7 @@ PointChooser::PointChooser(const Surfaces& surfaces, const Spacing& spacing, uin
     std::ranges::sort(keys);
     for (const auto& [key, side] : keys) order_.push_back(side);
     state_.spacing = spacing;
+    state_.parts = surfaces.parts_key();
     start_over();
 }
 
@@ -96,9 +97,10 @@ bool PointChooser::is_narrow(Side side, const glm::vec3& normal) const {
 }
 
 bool PointChooser::restore(State state) {
-    if (state.next > order_.size() || state.hits.size() != state.points.size() * rays_ ||
-        state.points.size() > kMostPoints || !(state.spacing.least >= state_.spacing.least) ||
-        !(state.spacing.most >= state_.spacing.most) || !std::isfinite(state.spacing.most))
+    if (state.parts != state_.parts || state.next > order_.size() ||
+        state.hits.size() != state.points.size() * rays_ || state.points.size() > kMostPoints ||
+        !(state.spacing.least >= state_.spacing.least) || !(state.spacing.most >= state_.spacing.most) ||
+        !std::isfinite(state.spacing.most))
         return false;
     for (const GatheringPoint& p : state.points)
         if (p.side >= order_.size() || !(p.reach > 0) || !(p.reach <= state.spacing.most) || !p.is_finite())

@@ -77,6 +77,7 @@ class PointChooser {
         uint64_t next = 0;  ///< candidate
         std::vector<GatheringPoint> points;
         std::vector<RayHit> hits;  ///< of the rays of each point
+        uint64_t parts = 0;        ///< Surfaces::parts_key(): hits name sides
     };
     const State& state() const { return state_; }
     State take() { return std::move(state_); }

@@ -138,6 +138,7 @@ BakeSections write_points(const PointChooser::State& state) {
     BakeSections sections;
     put(sections, "points", state.points);
     put(sections, "hits", state.hits);
+    put(sections, "parts", std::vector{state.parts});
     put(sections, "next", std::vector{state.next});
     put(sections, "spacing", std::vector{state.spacing});
     return sections;
@@ -145,13 +146,15 @@ BakeSections write_points(const PointChooser::State& state) {
 
 Result<PointChooser::State> read_points(const BakeSections& sections) {
     PointChooser::State state;
-    std::vector<uint64_t> next;
+    std::vector<uint64_t> next, parts;
     std::vector<Spacing> spacing;
     LUCARNE_TRY(take(sections, "points", state.points));
     LUCARNE_TRY(take(sections, "hits", state.hits));
+    LUCARNE_TRY(take(sections, "parts", parts));
     LUCARNE_TRY(take(sections, "next", next));
     LUCARNE_TRY(take(sections, "spacing", spacing));
-    if (next.size() != 1 || spacing.size() != 1) return damaged("next");
+    if (next.size() != 1 || spacing.size() != 1 || parts.size() != 1) return damaged("next");
+    state.parts = parts[0];
     state.next = next[0];
     state.spacing = spacing[0];
     return state;

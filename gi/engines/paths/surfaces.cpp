@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <xxhash.h>
 
 #include "gi/shared/edge.h"
 #include "gi/tracing/light_sampling.h"
@@ -20,36 +21,70 @@ constexpr size_t kPlaces = 6;
 constexpr float kNearRim = 0.9f, kBeforeEdge = 0.95f;
 /// The share of a disc's area of each place that is cut off: at most half of it is, as its centre counts too.
 constexpr float kShareOfPlace = 0.5f / kPlaces;
-constexpr size_t kSidesATask = 4096;
+constexpr size_t kSidesATask = 4096, kSidesAtOnce = 16 * kSidesATask;
 
 }  // namespace
 
 Surfaces::Surfaces(std::unique_ptr<tracing::SurfelTracer> tracer)
-    : tracer_(std::move(tracer)), first_(2 * discs() + 1, 0), is_cut_(2 * discs(), false) {
+    : tracer_(std::move(tracer)), most_(kPlaces), first_(2 * discs() + 1, 0), is_cut_(2 * discs(), false) {}
+
+bool Surfaces::find_parts() {
     struct Found {
         std::vector<CutOffPart> parts;
         std::vector<float> shares;
     };
-    const size_t sides = 2 * discs();
-    std::vector<Found> found((sides + kSidesATask - 1) / kSidesATask);
+    const size_t begin_side = next_, end_side = std::min(next_ + kSidesAtOnce, 2 * discs());
+    std::vector<Found> found((end_side - begin_side + kSidesATask - 1) / kSidesATask);
     parallel_ranges(found.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t task = begin; task < end; ++task)
-            for (size_t side = task * kSidesATask; side < std::min(sides, (task + 1) * kSidesATask); ++side) {
+        for (size_t task = begin; task < end; ++task) {
+            const size_t first = begin_side + task * kSidesATask;
+            for (size_t side = first; side < std::min(end_side, first + kSidesATask); ++side) {
                 float share = 0;
-                const std::vector<CutOffPart> own = find_parts(static_cast<Side>(side), share);
+                const std::vector<CutOffPart> own = parts_cut_off(static_cast<Side>(side), share);
+                if (own.size() > most_) continue;
                 found[task].parts.insert(found[task].parts.end(), own.begin(), own.end());
                 found[task].shares.insert(found[task].shares.end(), own.size(), share);
             }
+        }
     });
     for (const Found& some : found) {
         parts_.insert(parts_.end(), some.parts.begin(), some.parts.end());
         shares_.insert(shares_.end(), some.shares.begin(), some.shares.end());
     }
+    while (parts_.size() > kMostParts * discs()) keep_sides_with(--most_);
+    next_ = end_side;
+    if (next_ < 2 * discs()) return true;
+    std::ranges::fill(first_, 0);
     for (const CutOffPart& part : parts_) {
         is_cut_[part.side] = true;
         ++first_[part.side + 1];
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    return false;
+}
+
+/// Drops the parts of sides that have more than `parts`. Which sides are left does not depend on when that
+/// happens.
+void Surfaces::keep_sides_with(size_t parts) {
+    size_t kept = 0;
+    for (size_t first = 0; first < parts_.size();) {
+        size_t last = first + 1;
+        while (last < parts_.size() && parts_[last].side == parts_[first].side) ++last;
+        if (last - first <= parts)
+            for (size_t i = first; i < last; ++i, ++kept) {
+                parts_[kept] = parts_[i];
+                shares_[kept] = shares_[i];
+            }
+        first = last;
+    }
+    parts_.resize(kept);
+    shares_.resize(kept);
+}
+
+uint64_t Surfaces::parts_key() const {
+    std::vector<Side> sides;
+    for (const CutOffPart& part : parts_) sides.push_back(part.side);
+    return XXH3_64bits(sides.data(), sides.size() * sizeof(Side));
 }
 
 /// Returns a place a radius above one of a disc's side, or of its parts.
@@ -59,7 +94,7 @@ glm::vec3 Surfaces::above(Side side, const glm::vec3& place) const {
 }
 
 /// Finds the parts of a side; sets the share of the disc's area that each of them has.
-std::vector<CutOffPart> Surfaces::find_parts(Side side, float& share) const {
+std::vector<CutOffPart> Surfaces::parts_cut_off(Side side, float& share) const {
     const Surfel& disc = tracer_->surfels()[side / 2];
     glm::vec3 tangent, bitangent;
     tracing::frame_of(disc.normal, tangent, bitangent);

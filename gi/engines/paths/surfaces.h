@@ -49,10 +49,18 @@ inline glm::vec3 normal_of(const SideSurfels& surfels, Side side) {
 }
 
 /// The sides that light paths meet: those of discs, and after them the parts that are cut off from these. A
-/// part has one side, the front of a surfel of its own. Thread-safe once made.
+/// part has one side, the front of a surfel of its own. Thread-safe once all parts are found.
 class Surfaces {
  public:
     explicit Surfaces(std::unique_ptr<tracing::SurfelTracer> tracer);
+    /// Finds the parts of some discs. Returns whether any are left. There are at most kMostParts a disc in
+    /// the mean: if there were more, sides with the most parts would have none. In foliage all discs cut each
+    /// other, and no part of them is a surface.
+    bool find_parts();
+    static constexpr size_t kMostParts = 2;
+    /// A hash that tells which sides have parts, and how many: sides of parts have other numbers if it
+    /// differs.
+    uint64_t parts_key() const;
 
     const tracing::SurfelTracer& tracer() const { return *tracer_; }
     /// The surfels of sides. Areas are those of whole discs; see area_of().
@@ -77,10 +85,13 @@ class Surfaces {
     bool see_each_other(Side one, Side other) const;
 
  private:
-    std::vector<CutOffPart> find_parts(Side side, float& share) const;
+    std::vector<CutOffPart> parts_cut_off(Side side, float& share) const;
+    void keep_sides_with(size_t parts);
     glm::vec3 above(Side side, const glm::vec3& place) const;
 
     std::unique_ptr<tracing::SurfelTracer> tracer_;
+    size_t next_ = 0;  ///< side whose parts are not known yet
+    size_t most_;      ///< parts that a side has; it has none if there were more
     std::vector<CutOffPart> parts_;
     std::vector<float> shares_;    ///< of each part, of its disc's area
     std::vector<uint32_t> first_;  ///< of each side of a disc: its parts; and their end

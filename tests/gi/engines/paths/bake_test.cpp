@@ -45,6 +45,26 @@ TEST(PathsBake, AnInterruptedOneIsContinuedAsIfItHadNeverBeenStopped) {
     }
 }
 
+TEST(PathsBake, OneThatWasBegunWithOtherPartsOfDiscsBeginsAgain) {
+    // The same scene as two processors might see it: a wall cuts other discs of the floor.
+    const auto with_wall_at = [](float x) {
+        std::vector<Surfel> surfels = scenes::closed_box(1, 24, glm::vec3(.5f));
+        scenes::add_rectangle(surfels, {x, 0, 0}, kY, .5f * kZ, 16, glm::vec3(.5f));
+        return input_of(std::move(surfels), 80, 64);
+    };
+    const BakeInput before = with_wall_at(.517f), now = with_wall_at(.5f);
+    const auto fresh = kPathsPrecomputes.make(), begun = kPathsPrecomputes.make();
+    finish(*fresh, now);
+    StepRunner<const BakeInput> runner;
+    runner.start(begun->steps(before));
+    while (begun->share() < .3) ASSERT_TRUE(runner.run(before, StepBudget::timed(0)));
+    ASSERT_LT(begun->share(), 1);
+    const auto continued = kPathsPrecomputes.make();
+    ASSERT_TRUE(continued->restore(now, begun->save()));
+    finish(*continued, now);
+    EXPECT_EQ(continued->save(), fresh->save());
+}
+
 TEST(PathsBake, CoarsePathsAreUsableBeforeAllAreMade) {
     const BakeInput input = small_box();
     const auto work = kPathsPrecomputes.make();

@@ -54,7 +54,9 @@ inline std::unique_ptr<tracing::SurfelTracer> tracer_of(std::vector<Surfel> surf
 
 /// Returns the surfaces of these surfels.
 inline Surfaces surfaces_of(std::vector<Surfel> surfels) {
-    return Surfaces(tracer_of(std::move(surfels)));
+    Surfaces surfaces(tracer_of(std::move(surfels)));
+    while (surfaces.find_parts()) continue;
+    return surfaces;
 }
 
 }  // namespace lucarne::gi::paths

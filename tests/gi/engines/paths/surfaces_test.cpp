@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "io/core/random.h"
 #include "tests/gi/engines/paths/paths_scenes.h"
 
 namespace lucarne::gi::paths {
@@ -61,6 +62,36 @@ TEST_F(SurfacesAboutAWall, KeepTheAreasOfDiscs) {
     for (const Surfel& disc : surfaces_.tracer().surfels()) discs += 2 * disc.area;
     EXPECT_NEAR(sum / discs, 1, 1e-4);
     EXPECT_FALSE(surfaces_.parts().empty());
+}
+
+TEST(SurfacesOfFoliage, HaveAtMostTwoPartsADisc) {
+    // Discs that cut each other, those of one half more often than those of the other.
+    std::vector<Surfel> surfels;
+    Random random(3);
+    for (int i = 0; i < 3000; ++i) {
+        glm::vec3 at, normal;
+        for (int axis = 0; axis < 3; ++axis) {
+            at[axis] = static_cast<float>(random.uniform());
+            normal[axis] = static_cast<float>(random.uniform() - .5);
+        }
+        surfels.push_back({at, glm::normalize(normal), glm::vec3(.5f), at.x < .5f ? .08f : .05f, .01f, 0});
+    }
+    const Surfaces surfaces = surfaces_of(surfels);
+    EXPECT_LE(surfaces.parts().size(), 2 * surfels.size());
+    EXPECT_GT(surfaces.parts().size(), surfels.size() / 2);
+    // Sides with many parts have none, wherever they are in the order.
+    size_t most = 0;
+    for (Side side = 0; side < 2 * surfels.size(); ++side)
+        most = std::max(most, surfaces.parts_of(side).size());
+    EXPECT_LT(most, 6u);
+    std::ranges::reverse(surfels);
+    const Surfaces reversed = surfaces_of(surfels);
+    EXPECT_EQ(reversed.parts().size(), surfaces.parts().size());
+    double sum = 0, discs = 0;
+    for (Side side = 0; side < 2 * surfaces.surfels().size(); ++side)
+        if (surfaces.exists(side)) sum += surfaces.area_of(side);
+    for (const Surfel& disc : surfaces.tracer().surfels()) discs += 2 * disc.area;
+    EXPECT_NEAR(sum / discs, 1, 1e-4);
 }
 
 TEST(SurfacesInTheOpen, AreWhole) {
