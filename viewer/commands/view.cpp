@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/registry.h"
 #include "io/core/log.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/options/drawing_options.h"
@@ -14,8 +15,10 @@
 #include "viewer/commands/options/outputs.h"
 #include "viewer/commands/options/shown_site.h"
 #include "viewer/flythrough/path.h"
+#include "viewer/frame/engine_bake.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
+#include "viewer/opening/moods.h"
 #include "viewer/project/project.h"
 #include "viewer/window/view_session.h"
 
@@ -36,8 +39,10 @@ struct ViewOptions {
 
 /// Returns the starting view of what is open. Called on a thread, because it reads nodes.
 Result<StartingView> starting_view(const ViewOptions& options, const octree::NodeSource& source) {
-    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, source));
     StartingView start;
+    const auto engine = gi::find_engine(prepared_engine());
+    start.is_prepared = engine && is_kept((*engine)->info, source);
+    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, source, start.is_prepared));
     LUCARNE_ASSIGN(start.camera, find_camera(loaded.scene, options.camera));
     start.fits_window = loaded.first_view && options.camera.empty();
     start.scene = std::move(loaded.scene);

@@ -1,14 +1,36 @@
 #include "viewer/frame/engine_bake.h"
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "gi/bake/bake_file.h"
 #include "gi/scene/views.h"
+#include "io/files/file.h"
 #include "octree/stream/cut.h"
 
 namespace lucarne::viewer {
+
+bool is_kept(const gi::EngineInfo& engine, const octree::NodeSource& source) {
+    const auto identity = source.identity();
+    if (!engine.precomputes || !identity) return false;
+    std::error_code unknown;
+    const auto written = std::filesystem::last_write_time(identity->file, unknown);
+    if (unknown) return false;
+    for (const auto& place :
+         {gi::bake_place(identity->file, engine.name), gi::bake_beside(identity->file, engine.name)}) {
+        if (place.empty() || !std::filesystem::exists(place, unknown)) continue;
+        if (std::filesystem::last_write_time(place, unknown) < written) continue;
+        const auto file = InputFile::open_shared(place);
+        const auto header = file ? gi::read_bake_header(**file) : tl::make_unexpected(file.error());
+        if (header && header->engine == engine.name && header->version == engine.precomputes->version &&
+            header->share >= 1)
+            return true;
+    }
+    return false;
+}
 
 EngineBake::Inputs EngineBake::inputs_of(const BakeSubject& subject) {
     const gi::Precomputes& how = *subject.engine.precomputes;

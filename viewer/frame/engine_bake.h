@@ -28,6 +28,10 @@ struct BakeSubject {
     bool is_shown = true;  ///< while it is made; a precomputation that runs already goes on as it does
 };
 
+/// Returns whether a finished precomputation of an engine is kept for a scan that has not been written since.
+/// It may have been made with other options or for other points: then pictures begin it again.
+bool is_kept(const gi::EngineInfo& engine, const octree::NodeSource& source);
+
 /// Runs the precomputation of the engine that draws pictures, and starts it again when an input changes.
 class EngineBake {
  public:

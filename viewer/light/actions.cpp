@@ -102,7 +102,7 @@ std::span<const Action<const Lighting>> light_actions() {
 }
 
 std::string_view engine_here(const View& view, Mood mood) {
-    return engine_of(mood, site_about(view).kind);
+    return engine_of(mood, site_about(view).kind, view.is_prepared);
 }
 
 void light_for_place(const Lighting& model) {
@@ -115,13 +115,13 @@ void light_for_place(const Lighting& model) {
         return;
     }
     std::string& engine = model.view.method.engine;
-    if (shows_moods(engine) && !gi::engine_is(engine, &gi::EngineInfo::unlit))
+    if (shows_moods(engine, model.view.is_prepared) && !gi::engine_is(engine, &gi::EngineInfo::unlit))
         engine = engine_here(model.view, *model.lights.mood);
 }
 
 void take_mood(const Lighting& model, Mood mood) {
     set_mood_here(model.view, mood);
-    if (mood == Mood::scan_colours || shows_moods(model.view.method.engine))
+    if (mood == Mood::scan_colours || shows_moods(model.view.method.engine, model.view.is_prepared))
         model.view.method.engine = engine_here(model.view, mood);
     model.lights.selected = 0;
     model.lights.mood = mood;

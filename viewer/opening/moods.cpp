@@ -237,9 +237,14 @@ Mood usual_mood(const Site& site) {
     return in_rooms(site) ? Mood::evening : Mood::daylight;
 }
 
-std::string_view engine_of(Mood mood, SiteKind kind) {
+std::string_view prepared_engine() {
+    return "paths";
+}
+
+std::string_view engine_of(Mood mood, SiteKind kind, bool is_prepared) {
     if (mood == Mood::scan_colours) return gi::engine_with(&gi::EngineInfo::unlit).name;
     const bool outside = kind != SiteKind::interior;
+    if (is_prepared && !outside) return prepared_engine();
     const bool under_sky =
         mood == Mood::daylight || (outside && (mood == Mood::evening || mood == Mood::raking_light));
     if (under_sky) {
@@ -250,9 +255,11 @@ std::string_view engine_of(Mood mood, SiteKind kind) {
     return gi::default_engine().name;
 }
 
-bool shows_moods(std::string_view engine) {
-    return std::ranges::any_of(
-        kMoods, [&](const MoodInfo& info) { return engine_of(info.mood, SiteKind::interior) == engine; });
+bool shows_moods(std::string_view engine, bool is_prepared) {
+    return std::ranges::any_of(kMoods, [&](const MoodInfo& info) {
+        return engine_of(info.mood, SiteKind::interior) == engine ||
+               engine_of(info.mood, SiteKind::interior, is_prepared) == engine;
+    });
 }
 
 void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera) {

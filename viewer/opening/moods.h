@@ -34,12 +34,15 @@ std::string_view mood_name(Mood mood);
 
 /// Returns the light that a site is first shown in.
 Mood usual_mood(const Site& site);
-/// Returns the engine that shows a mood: `unlit` for scan colours; `environment` where a sky lights the site
-/// (by day, and outside also in the evening and for raking light) if this machine can run it; else the
-/// default engine.
-std::string_view engine_of(Mood mood, SiteKind kind);
+/// Returns the engine that shows a mood: `unlit` for scan colours; in rooms whose light paths are known
+/// (`is_prepared`) `paths`, which is nearest to `reference` there by day and by lamps; `environment` where a
+/// sky lights the site (by day, and outside also in the evening and for raking light) if this machine can run
+/// it; else the default engine.
+std::string_view engine_of(Mood mood, SiteKind kind, bool is_prepared = false);
 /// Whether some mood is shown by this engine. Others were chosen by a person, and stay when the mood changes.
-bool shows_moods(std::string_view engine);
+bool shows_moods(std::string_view engine, bool is_prepared = false);
+/// The engine that shows rooms once it has computed its light paths.
+std::string_view prepared_engine();
 
 /// Replaces the scene's lights, sky, backdrop and exposure; the points' colours for clay, and from clay.
 /// Light comes from the left of `camera`'s view of objects, and by day from the north-west for terrain. All

@@ -63,6 +63,7 @@ struct StartingView {
     bool fits_window = false;  ///< the camera is the site's first view, to be fitted to the window
     std::optional<Mood> mood;  ///< the light is this mood's
     std::string engine;        ///< what draws it at first
+    bool is_prepared = false;  ///< what prepared_engine() computes in advance is kept
     Site site;
     std::array<glm::dvec3, 2> box{};  ///< the box to look at, world units
     double metres_per_unit = 1;

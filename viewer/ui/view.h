@@ -32,6 +32,8 @@ struct View {
     Site site;             ///< what the open scans show
     Navigation navigation;
     bool entered = false;  ///< the user has gone inside
+    /// What prepared_engine() computes in advance is known for the open scans.
+    bool is_prepared = false;
 
     gi::Scene scene;
     uint64_t scene_version = 1, shown_changes = 0;

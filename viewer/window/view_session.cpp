@@ -16,6 +16,7 @@
 #include "viewer/frame/rgba.h"
 #include "viewer/light/darkness.h"
 #include "viewer/opening/first_view.h"
+#include "viewer/opening/moods.h"
 #include "viewer/ui/on_screen.h"
 #include "viewer/ui/popups.h"
 #include "viewer/window/actions/actions.h"
@@ -114,6 +115,8 @@ void ViewSession::take_picture() {
     relit_seen_ |= newest;
     lit_seen_ |= latest->source == scans_.source() && !latest->moving &&
                  !gi::engine_is(latest->stats.lit_by, &gi::EngineInfo::unlit);
+    if (last_source && own_engine && latest->stats.lit_by == prepared_engine() && latest->stats.prepared == 1)
+        model_.view.is_prepared = true;
     if (whole) help_in_the_dark(*latest);
 }
 
@@ -183,6 +186,7 @@ void ViewSession::take_extent() {
     model_.view.scene_size = start->scene_size();
     model_.view.box = start->box;
     model_.view.site = start->site;
+    if (first || others) model_.view.is_prepared = start->is_prepared;
     model_.view.rig.set_clearance(model_.view.scene_size);
     if (first) model_.view.navigation.set_scene(start->scene_size(), start->metres_per_unit);
     if (!first && model_.view.scene_version != own_scene_) return;

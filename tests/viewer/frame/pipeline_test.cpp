@@ -1,11 +1,15 @@
 #include "viewer/frame/pipeline.h"
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "gi/registry.h"
 #include "tests/viewer/frame/with_cornell.h"
+#include "viewer/frame/engine_bake.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -182,6 +186,24 @@ TEST_F(PipelineTest, TheStandInDrawsUntilSomethingIsComputedInAdvance) {
         stats = frame("paths");
     }
     EXPECT_TRUE(stats.prepared);
+}
+
+TEST_F(PipelineTest, KeptPreparationsAreFoundUnlessTheScanIsNewer) {
+    const gi::EngineInfo& paths = (*gi::find_engine("paths"))->info;
+    EXPECT_FALSE(is_kept(paths, *source_));
+    EXPECT_FALSE(is_kept((*gi::find_engine("vpl"))->info, *source_));
+    ASSERT_TRUE(pipeline_->set_engine("paths"));
+    const auto file = pipeline_->prepare();
+    ASSERT_TRUE(file) << file.error().line();
+    EXPECT_TRUE(is_kept(paths, *source_));
+    const auto cache = source_->identity()->file;
+    const auto kept_at = std::filesystem::last_write_time(*file);
+    std::filesystem::last_write_time(cache, kept_at + std::chrono::hours(1));
+    EXPECT_FALSE(is_kept(paths, *source_)) << "the scan was converted again";
+    std::filesystem::last_write_time(cache, kept_at);
+    EXPECT_TRUE(is_kept(paths, *source_));
+    std::ofstream(*file) << "damaged";
+    EXPECT_FALSE(is_kept(paths, *source_));
 }
 
 TEST_F(PipelineTest, TheStandInDrawsUntilAllNodesAreThere) {

@@ -49,6 +49,21 @@ TEST(Moods, ScansWithoutColoursShowTheirShape) {
     EXPECT_EQ(scene.look.unlit.shading, gi::Shading::relief);
 }
 
+TEST(Moods, RoomsWhoseLightPathsAreKnownAreShownByThem) {
+    for (const MoodInfo& info : moods()) {
+        const bool is_lit = info.mood != Mood::scan_colours;
+        EXPECT_EQ(engine_of(info.mood, SiteKind::interior, true), is_lit ? "paths" : "unlit") << info.name;
+        EXPECT_NE(engine_of(info.mood, SiteKind::interior), "paths") << info.name;
+        EXPECT_EQ(engine_of(info.mood, SiteKind::object, true), engine_of(info.mood, SiteKind::object));
+    }
+    EXPECT_TRUE(shows_moods("paths", true));
+    EXPECT_FALSE(shows_moods("paths")) << "whoever chose it waits for it";
+    for (const bool is_prepared : {false, true}) {
+        EXPECT_TRUE(shows_moods("vpl", is_prepared)) << "and changes when the paths are known";
+        EXPECT_FALSE(shows_moods("micro", is_prepared));
+    }
+}
+
 TEST(Moods, RakingLightStandsBesideAWallAndGrazesIt) {
     const Site site = room();
     gi::Scene scene = gi::default_scene(site.box[0], site.box[1]);

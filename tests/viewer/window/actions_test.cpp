@@ -94,6 +94,29 @@ TEST(Actions, MoodsLightWhatIsOpenAndScanColoursNeedNoLight) {
     EXPECT_EQ(model.view.method.engine, engine_of(Mood::daylight, SiteKind::object));
 }
 
+TEST(Actions, MoodsOfPreparedRoomsAreShownByTheirLightPaths) {
+    ViewModel model(10);
+    const auto actions = bound_actions(model);
+    const KeyChord daylight{GLFW_KEY_2, GLFW_MOD_SHIFT}, evening{GLFW_KEY_3, GLFW_MOD_SHIFT};
+    model.view.site.kind = SiteKind::interior;
+    model.view.site.outline = {glm::dvec3(0), glm::dvec3(1)};
+    model.view.site.box = {glm::dvec3(0), glm::dvec3(1)};
+    model.view.method.engine = "paths";
+    run_actions(actions, std::array{daylight});
+    EXPECT_EQ(model.view.method.engine, "paths") << "chosen by hand, it is still being computed";
+    model.view.method.engine = "vpl";
+    run_actions(actions, std::array{evening});
+    EXPECT_EQ(model.view.method.engine, "vpl");
+    model.view.is_prepared = true;
+    run_actions(actions, std::array{daylight});
+    EXPECT_EQ(model.view.method.engine, "paths");
+    run_actions(actions, std::array{evening});
+    EXPECT_EQ(model.view.method.engine, "paths");
+    model.view.method.engine = "micro";
+    run_actions(actions, std::array{daylight});
+    EXPECT_EQ(model.view.method.engine, "micro") << "the chosen engine stays";
+}
+
 TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     ImGui::CreateContext();  // the first views fit the window
     ImGui::GetIO().DisplaySize = ImVec2(400, 300);

@@ -245,7 +245,8 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     return drawing;
 }
 
-Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
+Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source,
+                                    bool is_prepared) {
     SceneForScan loaded;
     loaded.engine = options.render.engine;
     gi::Scene& scene = loaded.scene;
@@ -266,7 +267,7 @@ Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree:
         const Site& site = loaded.site.emplace(shown_site(source));
         if (!options.mood.empty()) {
             LUCARNE_ASSIGN(loaded.mood, find_mood(options.mood));
-            const std::string_view engine = engine_of(*loaded.mood, site.kind);
+            const std::string_view engine = engine_of(*loaded.mood, site.kind, is_prepared);
             if (options.engine_by_mood && takes_all(engine, options.render.options)) loaded.engine = engine;
         } else {
             const bool lit = !gi::engine_is(options.render.engine, &gi::EngineInfo::unlit);

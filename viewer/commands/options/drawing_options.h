@@ -64,10 +64,11 @@ struct SceneForScan {
 /// the engine lights it. The scene has at least one camera. A mood in the options replaces the light of the
 /// file. With a mood, or without a file, the first camera is the first view of what the scan shows, unless
 /// the file has cameras, and an overview follows. `size` in the options is the picture's, `render.engine` is
-/// set (take_render_settings()). With a mood, or without a file, loads a sample of the coarsest nodes.
-/// Errors: those of reading the file; ErrorKind::arguments if no point has the attribute that colours are
-/// requested from.
-Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source);
+/// set (take_render_settings()). `is_prepared`: see engine_of(). With a mood, or without a file, loads a
+/// sample of the coarsest nodes. Errors: those of reading the file; ErrorKind::arguments if no point has the
+/// attribute that colours are requested from.
+Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source,
+                                    bool is_prepared = false);
 
 /// Returns what was chosen for the scan: "interior: camera 'inside' at 1.20 3.40 1.60, mood evening". Empty
 /// if the scene file has chosen it all.
