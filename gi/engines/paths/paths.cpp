@@ -119,7 +119,7 @@ Result<void> PathsEngine::prepare(Frame& frame) {
         point_sky_of_.reset();
         irradiance_.clear();
         arriving_.reset();
-        pixel_points_ = {};
+        pixel_points_ = PixelPoints();
     }
     LUCARNE_TRY(upload_sky(frame, sky_));
     if (even_sky_of_ != scene_.environment) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include <xxhash.h>
 
@@ -11,7 +12,7 @@
 namespace lucarne::gi::paths {
 namespace {
 
-constexpr size_t kPixelsAtOnce = 2048;
+constexpr size_t kPixelsAtOnce = 2048, kPixelsAPiece = size_t{1} << 16;
 
 uint64_t key_of(const CameraView& camera, std::span<const GBufferTexel> texels, const glm::vec3& offset,
                 uint64_t lists) {
@@ -31,30 +32,43 @@ void PixelPoints::begin(const PathsBake& bake, const CameraView& camera, std::sp
     key_ = key;
     found_ = {};
     alone_ = {};
-    searched_ = 0;
+    searched_ = kept_ = 0;
+}
+
+PixelPoints::Piece PixelPoints::find(std::span<const SurfacePoint> surfaces) const {
+    std::atomic<size_t> alone = 0;
+    Piece piece{find_sharing(*bake_, surfaces.size(), [&](PointFinder& finder, size_t i) {
+        const SurfacePoint& at = surfaces[i];
+        if (!(at.radius > 0)) return false;
+        if (!finder.find(at.position - offset_, at.normal)) ++alone;
+        return true;
+    })};
+    piece.alone = alone;
+    return piece;
 }
 
 void PixelPoints::visit(List list, std::span<const SurfacePoint> surfaces, const Visit& visit) {
-    Sharing& found = found_[static_cast<size_t>(list)];
-    if (found.first.empty()) alone_[static_cast<size_t>(list)] = 0;
-    for (size_t first = 0; first < surfaces.size(); first += kMostPixels) {
-        const std::span some = surfaces.subspan(first, std::min(surfaces.size() - first, kMostPixels));
-        if (found.first.size() != some.size() + 1 || some.size() < surfaces.size()) {
-            std::atomic<size_t> alone = 0;
-            found = find_sharing(*bake_, some.size(), [&](PointFinder& finder, size_t i) {
-                const SurfacePoint& at = some[i];
-                if (!(at.radius > 0)) return false;
-                if (!finder.find(at.position - offset_, at.normal)) ++alone;
-                return true;
-            });
-            alone_[static_cast<size_t>(list)] += alone;
+    std::vector<Piece>& kept = found_[static_cast<size_t>(list)];
+    size_t& alone = alone_[static_cast<size_t>(list)];
+    alone = 0;
+    for (size_t first = 0; first < surfaces.size(); first += kPixelsAPiece) {
+        const std::span some = surfaces.subspan(first, std::min(surfaces.size() - first, kPixelsAPiece));
+        const size_t number = first / kPixelsAPiece;
+        Piece found;
+        if (number >= kept.size()) {
+            found = find(some);
             searched_ += some.size();
+            if (number == kept.size() && kept_ + found.size() <= most_kept_) {
+                kept_ += found.size();
+                kept.push_back(std::move(found));
+            }
         }
+        const Piece& own = number < kept.size() ? kept[number] : found;
+        alone += own.alone;
         parallel_ranges(some.size(), kPixelsAtOnce, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i)
-                if (some[i].radius > 0) visit(first + i, found.of(i));
+                if (some[i].radius > 0) visit(first + i, own.points.of(i));
         });
-        if (some.size() < surfaces.size()) found = {};
     }
 }
 

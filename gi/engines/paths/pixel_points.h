@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -17,7 +18,10 @@ namespace lucarne::gi::paths {
 /// are found once: a lamp that is dragged costs no search.
 class PixelPoints {
  public:
-    static constexpr size_t kMostPixels = size_t{1} << 21;  ///< found at a time; some 100 MB
+    /// Most shares and pixels that are kept, of 8 bytes at most: some 4 million pixels of 6 points each, 256
+    /// MB. The points of pixels after these are searched in every call.
+    static constexpr size_t kMostKept = size_t{1} << 25;
+    explicit PixelPoints(size_t most_kept = kMostKept) : most_kept_(most_kept) {}
 
     /// Begins a picture. `offset`: of the bake's coordinates in those of the frame (Frame::bake_offset);
     /// `lists`: how its pixels are listed. What was found for the same picture is kept.
@@ -29,16 +33,25 @@ class PixelPoints {
     using Visit = std::function<void(size_t, std::span<const PointShare>)>;
     enum class List : uint8_t { grid, rest };
     void visit(List list, std::span<const SurfacePoint> surfaces, const Visit& visit);
-    /// How many pixels of the picture were searched for.
+    /// For how many pixels of the picture points were searched, in all calls.
     size_t searched() const { return searched_; }
     /// How many of the pixels that were visited no point reaches.
     size_t alone() const { return alone_[0] + alone_[1]; }
 
  private:
+    /// The points of consecutive pixels.
+    struct Piece {
+        Sharing points;
+        size_t alone = 0;
+        size_t size() const { return points.first.size() + points.shares.size(); }
+    };
+    Piece find(std::span<const SurfacePoint> surfaces) const;
+
+    size_t most_kept_, kept_ = 0;
     const PathsBake* bake_ = nullptr;
     uint64_t key_ = 0;
     glm::vec3 offset_{0.0f};
-    std::array<Sharing, 2> found_;  ///< by list; of lists of at most kMostPixels
+    std::array<std::vector<Piece>, 2> found_;  ///< by list: from the first pixels on
     std::array<size_t, 2> alone_{};
     size_t searched_ = 0;
 };
