@@ -82,6 +82,19 @@ std::string ScanRow::name() const {
     return fmt::format("{} and {} more", name, paths.size() - 1);
 }
 
+std::string scans_title(const std::vector<ScanRow>& rows) {
+    std::string title;
+    size_t open = 0;
+    for (const ScanRow& row : rows)
+        if (row.state != ScanState::failed && ++open == 1) title = row.name();
+    if (open == 0) return "No scan open";
+    if (open > 1) title += fmt::format(" and {} more", open - 1);
+    for (const ScanRow& row : rows)
+        if (row.state == ScanState::converting)
+            title += fmt::format(" - {} {:.0f} %", row.stage, 100 * row.share);
+    return title;
+}
+
 /// The internal state of a row.
 struct ScanSet::Item {
     std::shared_ptr<Watch> watch = std::make_shared<Watch>();

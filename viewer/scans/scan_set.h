@@ -56,6 +56,9 @@ struct ScanRow {
     }
 };
 
+/// Returns what the window's title says of these scans. Leaves out files that could not be opened.
+std::string scans_title(const std::vector<ScanRow>& rows);
+
 /// The starting camera and lights.
 struct StartingView {
     gi::Scene scene;

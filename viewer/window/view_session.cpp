@@ -68,20 +68,6 @@ void draw_backdrop(const gi::Backdrop& backdrop) {
                                                             top, bottom, bottom);
 }
 
-/// Returns the window's title. Leaves out files that could not be opened.
-std::string scans_title(const std::vector<ScanRow>& rows) {
-    std::string title;
-    size_t open = 0;
-    for (const ScanRow& row : rows)
-        if (row.state != ScanState::failed && ++open == 1) title = row.name();
-    if (open == 0) return "No scan open";
-    if (open > 1) title += fmt::format(" and {} more", open - 1);
-    for (const ScanRow& row : rows)
-        if (row.state == ScanState::converting)
-            title += fmt::format(" - {} {:.0f} %", row.stage, 100 * row.share);
-    return title;
-}
-
 }  // namespace
 
 double ViewSession::seconds_at_rest() const {

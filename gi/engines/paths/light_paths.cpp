@@ -68,9 +68,10 @@ class MetPlaces {
     }
     /// Returns so many of each leaf's places, even in the leaf; none where there are none.
     std::vector<std::vector<Place>> choose(std::span<const uint32_t> own) const {
-        std::vector<std::vector<Place>> chosen = choose_some(own);
+        const std::vector<std::vector<uint32_t>> some = choose_some(own);
+        std::vector<std::vector<Place>> chosen(some.size());
         parallel_ranges(chosen.size(), kLeavesAPiece, [&](size_t begin, size_t end) {
-            for (size_t leaf = begin; leaf < end; ++leaf) make_even(chosen[leaf]);
+            for (size_t leaf = begin; leaf < end; ++leaf) chosen[leaf] = even_ones(some[leaf]);
         });
         return chosen;
     }
@@ -94,10 +95,10 @@ class MetPlaces {
                                                         point.side, static_cast<uint32_t>(hit % rays()),
                                                         static_cast<uint32_t>(rays()), points_.hits[hit])};
     }
-    /// Returns kTried times as many, at the middles of equal parts of the weight of all in their order, which
-    /// looks random.
-    std::vector<std::vector<Place>> choose_some(std::span<const uint32_t> own) const {
-        std::vector<std::vector<Place>> some(met_.size());
+    /// Returns kTried times as many hits, at the middles of equal parts of the weight of all in their order,
+    /// which looks random.
+    std::vector<std::vector<uint32_t>> choose_some(std::span<const uint32_t> own) const {
+        std::vector<std::vector<uint32_t>> some(met_.size());
         std::vector<uint32_t> left = met_;
         std::vector<double> gone(met_.size(), 0);
         each([&](size_t hit, uint32_t leaf) {
@@ -106,32 +107,33 @@ class MetPlaces {
             const bool is_last = --left[leaf] == 0;
             const double due = is_last ? static_cast<double>(count)
                                        : gone[leaf] / weights_[leaf] * static_cast<double>(count) - .5;
-            if (static_cast<double>(some[leaf].size()) >= due) return;
-            const Place place = place_of(hit);
             while (some[leaf].size() < count && static_cast<double>(some[leaf].size()) < due)
-                some[leaf].push_back(place);
+                some[leaf].push_back(static_cast<uint32_t>(hit));
         });
         return some;
     }
-    /// Keeps one of kTried each along a curve through space.
-    static void make_even(std::vector<Place>& places) {
+    /// Returns the place of one of kTried hits each along a curve through space.
+    std::vector<Place> even_ones(std::span<const uint32_t> hits) const {
+        std::vector<Place> places;
         glm::vec3 low(3e38f), high(-3e38f);
-        for (const Place& place : places) {
-            low = glm::min(low, place.position);
-            high = glm::max(high, place.position);
+        for (const uint32_t hit : hits) {
+            places.push_back(place_of(hit));
+            low = glm::min(low, places.back().position);
+            high = glm::max(high, places.back().position);
         }
         const glm::vec3 size = high - low;
         const float edge = std::max({size.x, size.y, size.z, 1e-6f});
-        std::vector<std::pair<uint64_t, Place>> ordered;
-        for (const Place& place : places) {
-            const glm::vec3 at = (place.position - low) * (kCurve / edge);
-            ordered.emplace_back(octree::morton(static_cast<uint64_t>(at.x), static_cast<uint64_t>(at.y),
-                                                static_cast<uint64_t>(at.z)),
-                                 place);
+        std::vector<std::pair<uint64_t, uint32_t>> order;
+        for (uint32_t i = 0; i < places.size(); ++i) {
+            const glm::vec3 at = (places[i].position - low) * (kCurve / edge);
+            order.emplace_back(octree::morton(static_cast<uint64_t>(at.x), static_cast<uint64_t>(at.y),
+                                              static_cast<uint64_t>(at.z)),
+                               i);
         }
-        std::ranges::stable_sort(ordered, {}, [](const auto& item) { return item.first; });
-        places.clear();
-        for (size_t i = kTried / 2; i < ordered.size(); i += kTried) places.push_back(ordered[i].second);
+        std::ranges::sort(order);
+        std::vector<Place> even;
+        for (size_t i = kTried / 2; i < order.size(); i += kTried) even.push_back(places[order[i].second]);
+        return even;
     }
 
     std::span<const uint32_t> leaf_of_;
