@@ -50,7 +50,8 @@ bool has_size(const Light& light) {
            (light.kind == kDirectionalLight && light.direction.w > 0);
 }
 
-/// Returns the largest useful number of samples of a sun: its penumbra has no more texels than this.
+/// Returns the largest useful number of samples of a sun: its penumbra has no more texels than this in the
+/// widest of its views.
 uint32_t most_samples(const Light& sun, uint32_t resolution) {
     const double tangent = std::tan(std::min<double>(sun.direction.w, 1.5));
     return static_cast<uint32_t>(1 + std::min(2 * tangent * resolution, 1e6));

@@ -86,15 +86,15 @@ CameraView quarter_view(const Light& light, uint32_t face, uint32_t resolution) 
 }
 
 /// Makes one of the nested views of a directional light that do not show everything. Its rays diverge as
-/// those of the whole view do, or less.
+/// those of the whole view do, or less, and it is so far away that even there where the scan ends toward the
+/// light it is as wide as nested_view() asks.
 CameraView finer_view(const Light& light, uint32_t face, const Bounds& bounds, uint32_t resolution) {
     const glm::vec3 direction(light.direction), middle(light.position);
     const float half =
         light.position.w * std::pow(kNestedStep, static_cast<float>(face)) * (1 + kNestedBorder);
-    // What casts shadows may be as far away as the scan goes on.
     const float reach =
         glm::length(bounds.max - bounds.min) / 2 + glm::length((bounds.min + bounds.max) / 2.0f - middle);
-    const float distance = std::max(2 * kFarAway * half, 2 * reach);
+    const float distance = std::max(2 * kFarAway * half, (1 + 1 / kNestedBorder) * reach);
     return square_view(middle - direction * distance, direction, half / distance, distance - reach,
                        resolution);
 }

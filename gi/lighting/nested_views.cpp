@@ -68,8 +68,18 @@ void set_nested_views(const glm::vec3& eye, const Bounds& bounds, const DeviceCu
         ++light.nested;
     }
     if (light.nested == 1) return;
+    // Motion along the light changes no view.
+    const glm::vec3 direction(light.direction), middle = (bounds.min + bounds.max) / 2.0f;
+    const glm::vec3 beside = eye - direction * glm::dot(eye - middle, direction);
     const float step = kStep * half;
-    light.position = glm::vec4(glm::floor(eye / step + .5f) * step, half);
+    light.position = glm::vec4(glm::floor(beside / step + .5f) * step, half);
+}
+
+Light without_nested_views(Light light) {
+    if (light.kind != kDirectionalLight) return light;
+    light.nested = 0;
+    light.position = glm::vec4(0.0f);
+    return light;
 }
 
 }  // namespace lucarne::gi

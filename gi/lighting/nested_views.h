@@ -18,4 +18,8 @@ inline constexpr float kNestedBorder = 1.0f / 16;
 void set_nested_views(const glm::vec3& eye, const Bounds& bounds, const DeviceCut& cut, uint32_t resolution,
                       Light& light);
 
+/// Returns the light as it is whatever views its shadows are drawn in: what rays find of it depends on no
+/// view.
+Light without_nested_views(Light light);
+
 }  // namespace lucarne::gi

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gi/gl_frame.h"
+#include "gi/lighting/nested_views.h"
 #include "gi/lighting/surfel_light.h"
 #include "gi/shared/flat_surfel.h"
 #include "gi/shared/light.h"
@@ -23,6 +24,11 @@ size_t views_of_one(std::span<const LightView> views) {
     size_t count = 1;
     while (count < views.size() && views[count].light == views[0].light) ++count;
     return count;
+}
+
+/// Whether two lights give the same to entry points.
+bool is_same(const Light& a, const Light& b, bool is_traced) {
+    return is_traced ? without_nested_views(a) == without_nested_views(b) : a == b;
 }
 
 }  // namespace
@@ -106,7 +112,7 @@ Result<std::vector<glm::vec3>> EntryLight::irradiance(Frame& frame, std::span<co
         if (!is_traced)
             for (const LightView& view : own) cut = mix64(cut, view.cut->fingerprint());
         const auto found = std::ranges::find_if(kept_, [&](const Kept& k) {
-            if (!keeps || k.light != light) return false;
+            if (!keeps || !is_same(k.light, light, k.is_traced)) return false;
             return any_state ? k.is_traced || !is_traced : k.cut == cut && k.is_traced == is_traced;
         });
         if (found != kept_.end()) {

@@ -31,6 +31,7 @@
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_gbuffers.h"
 #include "gi/lighting/light_options.h"
+#include "gi/lighting/nested_views.h"
 #include "gi/native/reflectance.h"
 #include "gi/shared/brdf.h"
 #include "io/core/random.h"
@@ -193,13 +194,22 @@ Result<void> PathsEngine::bounce(Frame& frame, const std::vector<LightView>& vie
 /// Brings the light at the gathering points up to date.
 Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& views, bool any_state) {
     Basis basis{scene_, cuts_, {}, traces_shadows(frame)};
-    for (const LightView& view : views) basis.lights.push_back(view.light);
+    const auto lights_of_views = [&] {
+        std::vector<Light> lights;
+        for (const LightView& view : views) {
+            const Light light = basis.is_traced ? without_nested_views(view.light) : view.light;
+            if (!basis.is_traced || lights.empty() || lights.back() != light) lights.push_back(light);
+        }
+        return lights;
+    };
     // In motion nodes arrive all the time, and light of a moment ago will do.
     if (any_state) basis.cuts = light_of_.cuts;
     // Light by rays stays while the camera moves.
     const bool is_traced = std::exchange(basis.is_traced, basis.is_traced || light_of_.is_traced);
+    basis.lights = lights_of_views();
     if (!irradiance_.empty() && light_of_ == basis) return {};
     basis.is_traced = is_traced;
+    basis.lights = lights_of_views();
     basis.cuts = cuts_;
     irradiance_.clear();
     const bool indirect = wants_indirect(frame.settings);

@@ -7,8 +7,6 @@
 #define LUCARNE_GI_LIGHTING_NATIVE_EMISSION_INL_H
 #endif
 
-#include <cmath>
-
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -49,7 +47,8 @@ HWY_INLINE Mask goes_through(const Light& light, uint32_t face, const V3& offset
         const F along = dot(offset, light.direction);
         const F across2 = sub(dot(offset, offset), mul(along, along));
         const auto within = [&](uint32_t view) {
-            const float half = light.position.w * std::pow(kNestedStep, static_cast<float>(view));
+            float half = light.position.w;
+            for (uint32_t i = 0; i < view; ++i) half *= kNestedStep;
             return hn::Le(across2, set(half * half));
         };
         const Mask all = hn::Eq(zero, zero);

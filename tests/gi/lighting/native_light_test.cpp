@@ -229,6 +229,21 @@ TEST_F(NativeLight, IsThatOfTheShadersInNestedViews) {
           false,
           scenes::town_bounds()});
     ASSERT_GT(views_.size(), 1u);
+    for (const LightView& seen : views_) {  // each shows what it has to, also where the scan ends
+        if (seen.face + 1 == seen.light.nested) continue;
+        const glm::vec3 along(seen.light.direction),
+            across = glm::normalize(glm::cross(along, glm::vec3(0, 0, 1)));
+        const float half = seen.light.position.w * std::pow(kNestedStep, static_cast<float>(seen.face));
+        for (const float toward : {-13.0f, 0.0f, 13.0f})
+            for (const float side : {-.999f, .999f}) {
+                float depth = 0;
+                const glm::vec2 at = view_place(
+                    seen.view, glm::vec3(seen.light.position) + toward * along + side * half * across, depth);
+                EXPECT_GT(at.x, 0) << toward;
+                EXPECT_LT(at.x, static_cast<float>(seen.view.width)) << toward;
+                EXPECT_GT(depth, 0) << toward;
+            }
+    }
     const auto natively = light(true), by_shaders = light(false);
     size_t others = 0;
     for (size_t i = 0; i < pixels_; ++i) others += !alike(natively[i], by_shaders[i]);

@@ -2,8 +2,7 @@
 #include "gi/lighting/nested_views.h"
 
 #include <cmath>
-#include <memory>
-#include <random>
+#include <cstdio>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -37,12 +36,19 @@ TEST_F(NestedViews, AreAboutACameraInALargeScan) {
     ASSERT_GE(near.nested, 2u);
     EXPECT_FLOAT_EQ(near.position.w * std::pow(kNestedStep, static_cast<float>(near.nested - 1)),
                     glm::length(glm::vec3(8)));
-    EXPECT_LT(glm::distance(glm::vec3(near.position), eye), near.position.w / 4);
-    const auto moved = [&](float by) {
-        return views_from(glm::vec3(near.position) + near.position.w * glm::vec3(by)).position;
-    };
-    EXPECT_EQ(moved(.1f), near.position) << "moves in steps";
-    EXPECT_NE(moved(.5f), near.position);
+    const glm::vec3 toward(sun().direction);
+    EXPECT_LT(glm::length(glm::cross(glm::vec3(near.position) - eye, toward)), near.position.w / 4);
+    EXPECT_EQ(views_from(eye + .05f * toward).position, near.position) << "along the light nothing changes";
+    size_t steps = 0;
+    glm::vec4 last = near.position;
+    for (int i = 0; i < 100; ++i) {
+        const glm::vec4 now =
+            views_from(eye + .002f * near.position.w * static_cast<float>(i) * glm::vec3(1, -1, 0)).position;
+        steps += now != last;
+        last = now;
+    }
+    EXPECT_GT(steps, 0u);
+    EXPECT_LT(steps, 10u);
     EXPECT_EQ(views_from(glm::vec3(500)).nested, 1u) << "the scan is far away";
 
     const auto room = load_cloud(*device, SurfelCloud(scenes::closed_box(1, 40, glm::vec3(.5f))));
@@ -118,7 +124,7 @@ TEST_F(NestedViews, GiveTheBouncedLightOfTheReference) {
     const double whole = compare(*device, "vpl", 1, 1024).mean_error;  // one view, which is fine enough
     for (const bool natively : {true, false}) {
         device->use_native_passes(natively);
-        EXPECT_LT(std::abs(compare(*device, "vpl", 1, 128).mean_error - whole), .02) << natively;
+        EXPECT_LT(std::abs(compare(*device, "vpl", 1, 128).mean_error - whole), .04) << natively;
     }
     EXPECT_LT(std::abs(compare(*device, "micro", 1).mean_error), .05);
 }

@@ -132,6 +132,7 @@ LUCARNE_FN Light light_of(vec4 a, vec4 b) {
     light.extent = with(normalize(cross(unit_of(b), vec3(0.0f, 0.0f, 1.0f))), 1.0f);
     uint kinds = uint(a.w * 4.0f);
     light.kind = kinds == 3u ? kCosineLight : kinds;
+    light.nested = 4u;
     return light;
 }
 LUCARNE_FN vec4 irradiance_sample(vec4 a, vec4 b, vec4 c, vec4 d) {
