@@ -41,9 +41,8 @@ constexpr float kFloor = 0.9f, kMostFloorHole = 2.0f, kMostHole = 0.4f;  ///< co
 constexpr double kRound = 0.8;  ///< area in that of the disc around the hole; a square's is .64
 constexpr double kLeastSurfaceDisc = 0.6;
 constexpr float kMostDisc = 5.5f;  ///< m, diagonal of the bounds: 3.9 m wide
-/// The tripod hides walls, too, so far around the middle of the floor's hole (in its radii, to which walls
-/// that cut it off add) and as high, m. Least share of the cells of a wall's hole that lie there, and of
-/// its rim that is surface.
+/// The tripod hides walls, too: so far around the middle of the floor's hole, in the radii of that hole, and
+/// as high, m. Least share of the cells of a wall's hole that lie there, and of its rim that is surface.
 constexpr float kTripodWidth = 1.2f, kTripodHeight = 1.3f;
 constexpr double kBelowTripod = 0.95, kLeastSurfaceBelow = 0.3;
 constexpr float kWall = 0.3f;          ///< |z| of a wall's normal, at most
@@ -81,6 +80,8 @@ struct Component {
     bool outer = false;                        ///< reaches the rim of the grid
     size_t hidden = 0;                         ///< cells that no station can have seen
     size_t surface = 0, crease = 0, open = 0;  ///< sides of cells at the rim
+    float behind =
+        0;  ///< of a wall's hole below a tripod: the sign of heights on the side without the tripod
     glm::ivec2 least{0}, most{0};
 };
 
@@ -122,15 +123,13 @@ class HoleFinder {
     void find_below(const std::vector<Tripod>& tripods, std::vector<Hole>& holes) {
         if (tripods.empty() || std::abs(grid_.plane().normal.z) > kWall) return;
         find_components();
-        std::erase_if(components_, [&](const Component& component) {
-            if (is_hole(component)) return true;  // find() has decided about it
+        for (Component& component : components_) {
             const auto tripod = std::ranges::find_if(
                 tripods, [&](const Tripod& before) { return is_below(component, before); });
-            if (tripod == tripods.end()) return true;
-            behind_ = grid_.plane().height(tripod->centre) > 0 ? -1.0f : 1.0f;
-            return false;
-        });
-        one_sided_ = true;
+            if (tripod != tripods.end())
+                component.behind = grid_.plane().height(tripod->centre) > 0 ? -1.0f : 1.0f;
+        }
+        std::erase_if(components_, [](const Component& component) { return component.behind == 0; });
         drop_seen_behind();
         add_to(holes);
     }
@@ -231,7 +230,8 @@ class HoleFinder {
         size_t below = 0;
         for (const uint32_t cell : component.cells) {
             const glm::vec3 apart = grid_.place_of(grid_.flat_of(grid_.cell_at(cell))) - tripod.centre;
-            below += glm::length(glm::vec2(apart)) < kTripodWidth * tripod.radius && apart.z < kTripodHeight;
+            below += glm::length(glm::vec2(apart)) < kTripodWidth * tripod.radius &&
+                     apart.z > -kBeside * grid_.cell() && apart.z < kTripodHeight;
         }
         return static_cast<double>(below) >= kBelowTripod * static_cast<double>(component.cells.size()) &&
                static_cast<double>(component.cells.size()) <=
@@ -273,6 +273,11 @@ class HoleFinder {
         return behind <= before ? -1.0f : 1.0f;
     }
 
+    /// The sign of heights behind a component's hole; 0: either side may be the one behind.
+    float behind_of(const Component& component) const {
+        return component.behind != 0 ? component.behind : is_floor() ? behind_ : 0;
+    }
+
     /// Drops holes with points behind them: what is there was seen through the hole, or is the side of a
     /// recess. A wall may have been scanned from either side, so points on both of its sides count.
     void drop_seen_behind() {
@@ -283,13 +288,14 @@ class HoleFinder {
         std::vector<bool> seen(components_.size(), false);
         for (const Voxel& voxel : voxels_.all()) {
             const float height = grid_.plane().height(voxel.position);
-            const float depth = is_floor() || one_sided_ ? behind_ * height : std::abs(height);
-            if (depth < kBeside * grid_.cell() || depth > kLookedBehind) continue;
+            if (std::abs(height) < kBeside * grid_.cell() || std::abs(height) > kLookedBehind) continue;
             const glm::ivec2 cell = grid_.cell_of(grid_.plane().flat(voxel.position));
             for (int y = cell.y - 1; y <= cell.y + 1; ++y)
                 for (int x = cell.x - 1; x <= cell.x + 1; ++x)
-                    if (grid_.inside(x, y) && component_of[grid_.index(x, y)] != UINT32_MAX)
-                        seen[component_of[grid_.index(x, y)]] = true;
+                    if (grid_.inside(x, y))
+                        if (const uint32_t i = component_of[grid_.index(x, y)];
+                            i != UINT32_MAX && behind_of(components_[i]) * height >= 0)
+                            seen[i] = true;
         }
         std::vector<Component> kept;
         for (size_t i = 0; i < components_.size(); ++i)
@@ -374,8 +380,7 @@ class HoleFinder {
     const Voxels& voxels_;
     const size_t plane_;
     const bool stations_;
-    float behind_ = -1;       ///< the sign of heights behind the plane
-    bool one_sided_ = false;  ///< a wall that was scanned from the other side only, as far as is known
+    float behind_ = -1;  ///< the sign of heights behind the plane
     std::vector<uint8_t> label_;
     std::vector<Component> components_;
     std::vector<uint32_t> voxel_at_;
@@ -462,8 +467,7 @@ class HoleSearch {
             return std::ranges::any_of(tripods, [&](const Tripod& on) { return on.plane == plane; });
         };
         for (const Hole& hole : holes)
-            if (has_tripod(hole.plane))
-                for (const uint32_t cell : hole.cells) grids_[hole.plane].set(cell, PlaneCell::surface);
+            for (const uint32_t cell : hole.cells) grids_[hole.plane].set(cell, PlaneCell::surface);
         for (size_t i = 0; i < grids_.size(); ++i) {
             for (size_t j = 0; j < grids_.size(); ++j)
                 if (has_tripod(j)) mark(i, j);
