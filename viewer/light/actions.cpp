@@ -115,13 +115,15 @@ void light_for_place(const Lighting& model) {
         return;
     }
     std::string& engine = model.view.method.engine;
-    if (shows_moods(engine, model.view.is_prepared) && !gi::engine_is(engine, &gi::EngineInfo::unlit))
+    if (shows_moods(engine, site_about(model.view).kind, model.view.is_prepared) &&
+        !gi::engine_is(engine, &gi::EngineInfo::unlit))
         engine = engine_here(model.view, *model.lights.mood);
 }
 
 void take_mood(const Lighting& model, Mood mood) {
     set_mood_here(model.view, mood);
-    if (mood == Mood::scan_colours || shows_moods(model.view.method.engine, model.view.is_prepared))
+    if (mood == Mood::scan_colours ||
+        shows_moods(model.view.method.engine, site_about(model.view).kind, model.view.is_prepared))
         model.view.method.engine = engine_here(model.view, mood);
     model.lights.selected = 0;
     model.lights.mood = mood;

@@ -255,10 +255,10 @@ std::string_view engine_of(Mood mood, SiteKind kind, bool is_prepared) {
     return gi::default_engine().name;
 }
 
-bool shows_moods(std::string_view engine, bool is_prepared) {
+bool shows_moods(std::string_view engine, SiteKind kind, bool is_prepared) {
     return std::ranges::any_of(kMoods, [&](const MoodInfo& info) {
         return engine_of(info.mood, SiteKind::interior) == engine ||
-               engine_of(info.mood, SiteKind::interior, is_prepared) == engine;
+               engine_of(info.mood, kind, is_prepared) == engine;
     });
 }
 

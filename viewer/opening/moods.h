@@ -39,8 +39,9 @@ Mood usual_mood(const Site& site);
 /// sky lights the site (by day, and outside also in the evening and for raking light) if this machine can run
 /// it; else the default engine.
 std::string_view engine_of(Mood mood, SiteKind kind, bool is_prepared = false);
-/// Whether some mood is shown by this engine. Others were chosen by a person, and stay when the mood changes.
-bool shows_moods(std::string_view engine, bool is_prepared = false);
+/// Whether some mood is shown by this engine: of rooms, or of a prepared site of this kind. Others were
+/// chosen by a person, and stay when the mood changes.
+bool shows_moods(std::string_view engine, SiteKind kind, bool is_prepared = false);
 /// The engine that shows rooms once it has computed its light paths.
 std::string_view prepared_engine();
 

@@ -108,8 +108,10 @@ bool PointChooser::restore(State state) {
     const auto is_side = [&](Side side) {
         return side / 2 < surfaces_.surfels().size() && surfaces_.exists(side);
     };
+    // Wider than that, places of entry points would be beyond floats.
+    const auto is_width = [&](float width) { return width >= 0 && width <= 1e6f * state.spacing.most; };
     for (const RayHit& hit : state.hits)
-        if ((!is_side(hit.side) && hit.side != kNone) || !std::isfinite(hit.width)) return false;
+        if ((!is_side(hit.side) && hit.side != kNone) || !is_width(hit.width)) return false;
     state_.spacing = state.spacing;
     start_over();
     state_ = std::move(state);

@@ -55,6 +55,9 @@ void PixelPoints::visit(List list, std::span<const SurfacePoint> surfaces, const
         const std::span some = surfaces.subspan(first, std::min(surfaces.size() - first, kPixelsAPiece));
         const size_t number = first / kPixelsAPiece;
         Piece found;
+        const auto is_of = [&](const Piece& piece) { return piece.points.first.size() == some.size() + 1; };
+        for (; number < kept.size() && !is_of(kept[number]); kept.pop_back())
+            kept_ -= kept.back().size();  // other pixels than before
         if (number >= kept.size()) {
             found = find(some);
             searched_ += some.size();

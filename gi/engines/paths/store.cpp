@@ -112,9 +112,12 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     if (!is_sound(groups)) return damaged("children");
     const auto is_point = [](const GatheringPoint& p) { return p.reach > 0 && p.is_finite(); };
     if (!std::ranges::all_of(paths.points, is_point)) return damaged("points");
-    if (!std::ranges::all_of(paths.hidden, [&](const PointPair& pair) {
-            return pair.first < paths.points.size() && pair.second < paths.points.size();
-        }))
+    if (!std::ranges::all_of(paths.hidden,
+                             [&](const PointPair& pair) {
+                                 return pair.first < paths.points.size() &&
+                                        pair.second < paths.points.size() && pair.first != pair.second;
+                             }) ||
+        !std::ranges::is_sorted(paths.hidden, {}, &PointPair::first))
         return damaged("hidden points");
     if (paths.rays.size() != paths.points.size() * rays_a_point ||
         !all_below(paths.rays, groups.count(), true))

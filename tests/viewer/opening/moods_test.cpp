@@ -56,11 +56,13 @@ TEST(Moods, RoomsWhoseLightPathsAreKnownAreShownByThem) {
         EXPECT_NE(engine_of(info.mood, SiteKind::interior), "paths") << info.name;
         EXPECT_EQ(engine_of(info.mood, SiteKind::object, true), engine_of(info.mood, SiteKind::object));
     }
-    EXPECT_TRUE(shows_moods("paths", true));
-    EXPECT_FALSE(shows_moods("paths")) << "whoever chose it waits for it";
+    EXPECT_TRUE(shows_moods("paths", SiteKind::interior, true));
+    EXPECT_FALSE(shows_moods("paths", SiteKind::object, true)) << "outside it was chosen by a person";
+    EXPECT_FALSE(shows_moods("paths", SiteKind::interior)) << "whoever chose it waits for it";
     for (const bool is_prepared : {false, true}) {
-        EXPECT_TRUE(shows_moods("vpl", is_prepared)) << "and changes when the paths are known";
-        EXPECT_FALSE(shows_moods("micro", is_prepared));
+        EXPECT_TRUE(shows_moods("vpl", SiteKind::interior, is_prepared))
+            << "and changes when the paths are known";
+        EXPECT_FALSE(shows_moods("micro", SiteKind::interior, is_prepared));
     }
 }
 
