@@ -256,9 +256,9 @@ std::optional<size_t> find_creases(const Patch& patch, const Refit& own, float s
         if (!crease) {
             const glm::vec3 n(other->plane.normal);
             const double apart = glm::dot(other->plane.normal, middle_of(other->points) - middle);
-            const glm::vec3 own(side.plane.normal);
-            if (std::abs(glm::dot(n, own)) > kParallel && std::abs(apart) > kLayersApart * spacing)
-                side.layered = apart * glm::dot(n, own) > 0 ? own : -own;
+            const glm::vec3 axis(side.plane.normal);
+            if (std::abs(glm::dot(n, axis)) > kParallel && std::abs(apart) > kLayersApart * spacing)
+                side.layered = apart * glm::dot(n, axis) > 0 ? axis : -axis;
             continue;
         }
         (side.first.distance > 0 ? side.second : side.first) = *crease;
