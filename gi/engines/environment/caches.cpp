@@ -7,6 +7,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "gi/shared/frame.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::environment {
@@ -45,11 +46,7 @@ float weight_of(const Cache& cache, const SurfacePoint& at) {
 /// the darker side, as on a floor at the foot of a sunlit wall.
 class LinearFit {
  public:
-    explicit LinearFit(const glm::vec3& normal) {
-        const glm::vec3 helper = std::abs(normal.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
-        right_ = glm::normalize(glm::cross(normal, helper));
-        up_ = glm::cross(right_, normal);
-    }
+    explicit LinearFit(const glm::vec3& normal) { frame_about(normal, right_, up_); }
     void add(const glm::vec3& offset, float reach, float weight) {
         if (!(scale_ > 0)) scale_ = 1 / reach;
         const glm::vec3 row = row_of(offset);

@@ -44,8 +44,8 @@ constexpr EngineInfo kInfo{
 constexpr size_t kPointsATask = 256;
 constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary points
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 340 MB
-/// Secondary points are four times as far apart as caches in a picture of about this side, pixels. In larger
-/// ones they stay as far apart in the scene: what pixels show by one more reflection is no finer there.
+/// Secondary points are four times as far apart as caches in a picture of about this side, pixels, and in
+/// others as far apart in the scene: what they light by one more reflection is no finer in larger pictures.
 constexpr float kCoarser = 4, kUsualSide = 250;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
