@@ -122,24 +122,29 @@ TEST(Air, RailingsAndWiresBeforeWallsStay) {
 }
 
 /// Of a wire with hardly more than one point after the other, some plane through these is stable. Their discs
-/// are no wider than the step from one to the next is long.
+/// reach to the third point at most: 2.3 to 3.0 steps wide for these and other wires, 6.1 to 8.8 if their
+/// cells were their shares. The points are drawn one coordinate after the other, so that every compiler tests
+/// the same wires.
 TEST(Air, WiresOfSinglePointsAreThin) {
-    Random random(16);
-    Cloud cloud;
-    add_wall(cloud, {0, 0, 0}, {2, 0, 0}, {0, 1, 0}, kWallSpacing / 2, random);
-    const size_t wire = cloud.points.size();
     constexpr double kStep = 0.012, kScatter = 0.003;
-    for (double x = 0.2; x < 1.8; x += kStep)
-        cloud.points.emplace_back(x, 0.5 + kScatter * gaussian(random),
-                                  0.4 + 0.3 * kScatter * gaussian(random));
-    cloud.normals.resize(cloud.points.size());
-    cloud.stations.resize(cloud.points.size());
-    const Estimate found = estimate(cloud);
-    const Drawn discs = drawn(found, wire, cloud.points.size());
-    std::printf("wire: %zu of %zu discs, radius up to %.3f m\n", discs.count, cloud.points.size() - wire,
-                discs.widest);
-    EXPECT_GE(discs.count, (cloud.points.size() - wire) * 9 / 10);
-    EXPECT_LT(discs.widest, 2.5 * kStep);
+    for (uint64_t seed = 0; seed < 4; ++seed) {
+        Random random(seed);
+        Cloud cloud;
+        add_wall(cloud, {0, 0, 0}, {2, 0, 0}, {0, 1, 0}, kWallSpacing / 2, random);
+        const size_t wire = cloud.points.size();
+        for (double x = 0.2; x < 1.8; x += kStep) {
+            const double up = kScatter * gaussian(random), out = 0.3 * kScatter * gaussian(random);
+            cloud.points.emplace_back(x, 0.5 + up, 0.4 + out);
+        }
+        cloud.normals.resize(cloud.points.size());
+        cloud.stations.resize(cloud.points.size());
+        const Estimate found = estimate(cloud);
+        const Drawn discs = drawn(found, wire, cloud.points.size());
+        std::printf("wire %d: %zu of %zu discs, radius up to %.3f m\n", int(seed), discs.count,
+                    cloud.points.size() - wire, discs.widest);
+        EXPECT_GE(discs.count, (cloud.points.size() - wire) * 9 / 10) << seed;
+        EXPECT_LT(discs.widest, 4 * kStep) << seed;
+    }
 }
 
 TEST(Air, ADiscInACrowdMustLieInItsPlane) {
