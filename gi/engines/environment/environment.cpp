@@ -46,6 +46,8 @@ constexpr uint32_t kSecondarySide = 8;    ///< of the micro-buffers at secondary
 constexpr size_t kMostPrimaries = 65536;  ///< their micro-buffers take up to 340 MB
 /// Secondary points are four times as far apart as caches in a picture of about this side, pixels, and in
 /// others as far apart in the scene: what they light by one more reflection is no finer in larger pictures.
+/// Caches are as many pixels apart as asked in such a picture and in smaller ones, and in one of four times
+/// the side twice as many: less in the scene, but not as much as pixels shrink.
 constexpr float kCoarser = 4, kUsualSide = 250;
 constexpr float kReach = 3;               ///< of a cache, in radii of its node
 constexpr float kLeastReach = 1.2f;       ///< likewise, beside other surfaces
@@ -122,6 +124,11 @@ GatherPoint point_at(const glm::vec3& position, const glm::vec3& normal, float l
             .scale = 1};
 }
 
+/// Returns the side of a square picture of as many pixels, in sides of a usual one.
+float relative_side(const CameraView& camera) {
+    return std::sqrt(static_cast<float>(camera.width) * static_cast<float>(camera.height)) / kUsualSide;
+}
+
 /// Returns those of the pixels that lie on a grid of this spacing.
 std::vector<uint32_t> every(uint32_t spacing, const CameraView& camera, std::span<const uint32_t> pixels) {
     std::vector<uint32_t> chosen;
@@ -170,8 +177,8 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
         if (s[kBruteForce]) {
             secondaries_.choose_all(tree);
         } else {
-            const float side = std::sqrt(static_cast<float>(frame.camera.width * frame.camera.height));
-            const float spacing = kCoarser * side / kUsualSide * static_cast<float>(s[kCacheSpacing]);
+            const float spacing =
+                kCoarser * relative_side(frame.camera) * static_cast<float>(s[kCacheSpacing]);
             LUCARNE_ASSIGN(const auto seen, buffers_.seen());
             secondaries_.choose(tree, seen,
                                 [&](size_t slot) { return shares_light(tree, slot, frame.camera, spacing); });
@@ -368,8 +375,10 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     std::vector<SidePlace> primaries;
     {
         const TimedPass pass(frame, "primary points");
-        primaries = primary_places(tree, lighting_.lit().surfels(), frame.camera, surfaces,
-                                   static_cast<float>(s[kCacheSpacing]), kMostPrimaries);
+        const float spacing =
+            std::sqrt(std::max(relative_side(frame.camera), 1.0f)) * static_cast<float>(s[kCacheSpacing]);
+        primaries =
+            primary_places(tree, lighting_.lit().surfels(), frame.camera, surfaces, spacing, kMostPrimaries);
         primaries_ = primaries.size();
     }
     {
