@@ -10,6 +10,11 @@
 #include "gi/shared/lobe.h"
 #include "gi/gather/sky_picture.h"
 
+// Narrow lobes are as wide as so many rays of a buffer. Between walls of exponent 1000 (Cornell box, one bounce, 24 x 24
+// rays), pictures of two seeds differ by a relMSE of .68 without, .11 with 4, .05 with 8 and .02 with 16; the mean of 8
+// frames differs from that of 150 without by .016, .019 and .025, and by .2 to .3 % in energy.
+#define kRaysALobe 8.0f
+
 // Returns the slot whose light the surface receives from a direction. Rays start above the surface to clear its noise,
 // and so would see everything from too near. Therefore the light is that of the point where the line from the surface
 // itself meets the plane of the disc; the pixel that shows that point knows its slot. `lifted`: from the surface to
@@ -133,10 +138,19 @@ uint seen_side(global const WideNode* nodes, Place place, const uint* slots, con
     return 2 * slot + (back ? 1u : 0u);
 }
 
-// Returns the specular light of a side in a direction, W/(sr m^2).
-float3 specular(global const float* light, global const float* directions, uint side, float3 to) {
+// Returns 1 less the mean cosine between a ray of a buffer and the directions of the cone about it that has the solid
+// angle of kRaysALobe rays: a quarter of the share of the sphere.
+float spread_of(Place place, float3 ray) {
+    float rays = 0.78539816f * GRID * GRID;  // in the disc that the grid covers
+    return kRaysALobe * place.scale * place.scale / (4.0f * rays * fmax(ray.z, 0.1f));
+}
+
+// Returns the specular light of a side in a direction, W/(sr m^2). The lobe is wider by `spread` (spread_of): rays meet
+// narrow lobes by chance, and few pixels would be as bright as they are with them.
+float3 specular(global const float* light, global const float* directions, uint side, float3 to, float spread) {
     float3 sent = vload3(side, light);
-    return sent.x + sent.y + sent.z > 0.0f ? sent * lobe_radiance(sent, vload3(side, directions), to) : (float3)(0.0f);
+    if (!(sent.x + sent.y + sent.z > 0.0f)) return (float3)(0.0f);
+    return sent * lobe_radiance(sent, vload3(side, directions) * fmax(1.0f - spread, 0.0f), to);
 }
 
 float3 sky_radiance(global const float* texels, SkyPicture sky, float3 direction) {
@@ -212,7 +226,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
                 float3 radiance = vload3(side, light);
                 if (reach2 >= 0.0f) radiance = without_bright(radiance, bright, reach2, side, depths[pixel]);
                 sum += weight * radiance;
-                if (glossy) sum += weight * specular(lobe_light, lobe_directions, side, -direction);
+                if (glossy) sum += weight * specular(lobe_light, lobe_directions, side, -direction, spread_of(place, ray));
             }
         }
     results[number] = (float4)(sum / cast, (float)(empty) / cast);
@@ -286,7 +300,7 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
                 if (lit && reach2 >= 0.0f)
                     radiance = without_bright(radiance, bright, reach2, code,
                                               length(slot_middle(nodes, code / 2) - place.position));
-                if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d);
+                if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d, spread_of(place, ray));
             } else if (sky.width > 0) {
                 radiance = sky_radiance(sky_texels, sky, d);
                 if (open > 0)
