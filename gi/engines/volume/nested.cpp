@@ -49,12 +49,13 @@ std::vector<glm::vec3> from_coarse(const Space& coarse, std::span<const glm::vec
     const auto faces = fine.faces.all();
     std::vector<glm::vec3> light(faces.size(), glm::vec3(0.0f));
     parallel_ranges(faces.size(), kCellsAtOnce, [&](size_t first, size_t last) {
+        Sights sights(coarse);
         for (size_t i = first; i < last; ++i) {
             const auto air = coarse_air_at(coarse, fine, fine.cell_before(faces[i]));
             if (!air) continue;
             const SurfacePoint at{
                 .position = faces[i].position, .normal = faces[i].normal, .radius = fine.grid().voxel};
-            light[i] = glm::vec3(irradiance_at(coarse, irradiance, at, glm::vec3(*air) + 0.5f));
+            light[i] = glm::vec3(irradiance_at(coarse, irradiance, at, *air, sights));
         }
     });
     return light;

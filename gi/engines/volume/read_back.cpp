@@ -52,15 +52,20 @@ struct Sum {
 
 class Reader {
  public:
-    Reader(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at)
-        : space_(space), irradiance_(irradiance), at_(at), place_(space.grid().place(at.position)) {
-        find_air();
-    }
-    Reader(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at,
-           const glm::vec3& air)
+    Reader(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at, Sights& sights)
         : space_(space),
           irradiance_(irradiance),
           at_(at),
+          sights_(sights),
+          place_(space.grid().place(at.position)) {
+        find_air();
+    }
+    Reader(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at, Sights& sights,
+           const glm::ivec3& air)
+        : space_(space),
+          irradiance_(irradiance),
+          at_(at),
+          sights_(sights),
           place_(space.grid().place(at.position)),
           air_(air),
           has_air_(true) {}
@@ -100,12 +105,13 @@ class Reader {
         float best = 0;
         uint32_t found = Faces::kNone;
         for (const int layer : kLayerOrder) {
-            const uint32_t voxel = space_.voxels.at(middle + layer * step_of(side));
+            const glm::ivec3 cell = middle + layer * step_of(side);
+            const uint32_t voxel = space_.voxels.at(cell);
             if (voxel == Voxels::kAir) continue;
             const uint32_t face = space_.faces.at(voxel, side);
             if (face == Faces::kNone) continue;
             const float likeness = likeness_of(space_.faces.all()[face]);
-            if (likeness <= best || !is_seen(space_.faces.all()[face])) continue;
+            if (likeness <= best || !sights_.see(air_, cell + step_of(side))) continue;
             best = likeness;
             found = face;
             if (best > kLikeEnough) break;
@@ -151,7 +157,8 @@ class Reader {
                 if (number == Faces::kNone) continue;
                 const Face& face = space_.faces.all()[number];
                 const float agreement = std::max(glm::dot(face.normal, at_.normal), other_way);
-                if (!(agreement > 0) || (has_air_ && !is_seen(face))) continue;
+                if (!(agreement > 0)) continue;
+                if (has_air_ && !sights_.see(air_, middle + away + step_of(side))) continue;
                 const glm::vec3 offset = (face.position - at_.position) / space_.grid().voxel;
                 sum.add(irradiance_[number], agreement / (0.1f + glm::dot(offset, offset)));
             }
@@ -159,32 +166,24 @@ class Reader {
         return sum;
     }
 
-    /// Finds air before the point: on the way to the viewer, who sees it, or else along its normal.
+    /// Finds air before the point: on the way to the viewer, who sees it, or else along its normal. Faces
+    /// count that border on this air. Rims of walls on the other side of a corner may lie in the plane of the
+    /// point.
     void find_air() {
         for (const glm::vec3& way : {at_.viewer, at_.normal})
             for (int step = 1; step <= kMostSteps; ++step) {
-                air_ = place_ + 0.5f * static_cast<float>(step) * way;
-                const glm::ivec3 cell(glm::floor(air_));
-                has_air_ = space_.grid().holds(cell) && space_.voxels.is_air(cell);
+                air_ = glm::ivec3(glm::floor(place_ + 0.5f * static_cast<float>(step) * way));
+                has_air_ = space_.grid().holds(air_) && space_.voxels.is_air(air_);
                 if (has_air_) return;
             }
-    }
-
-    /// Returns whether a face borders on the air before the point. Rims of walls on the other side of a
-    /// corner may lie in the plane of the point.
-    bool is_seen(const Face& face) const {
-        const glm::ivec3 cell = space_.cell_before(face);
-        const glm::ivec3 away = glm::abs(cell - glm::ivec3(glm::floor(air_)));
-        // There is no wall between neighbours that are air (gi/volume/README.md).
-        if (std::max({away.x, away.y, away.z}) <= 1) return true;
-        return space_.air.sees(air_, glm::vec3(cell) + 0.5f);
     }
 
     const Space& space_;
     std::span<const glm::vec3> irradiance_;
     const SurfacePoint& at_;
-    glm::vec3 place_;      ///< of the point, in units of voxels
-    glm::vec3 air_{0.0f};  ///< in the air before it
+    Sights& sights_;
+    glm::vec3 place_;    ///< of the point, in units of voxels
+    glm::ivec3 air_{0};  ///< the cell of air before it
     bool has_air_ = false;
 };
 
@@ -198,6 +197,12 @@ bool is_near(const Grid& grid, const glm::vec3& position) {
 
 glm::vec4 mean_of(const Sum& sum) {
     return sum.weights > 0 ? glm::vec4(sum.light / sum.weights, 1) : glm::vec4(0.0f);
+}
+
+glm::vec4 found_by(const LitLevel& level, Sights& sights, const SurfacePoint& at) {
+    return is_near(level.space->grid(), at.position)
+               ? mean_of(Reader(*level.space, level.irradiance, at, sights).read())
+               : glm::vec4(0.0f);
 }
 
 /// Returns how much a level counts at a position, 0 to 1: less and less near its border. Where it ends
@@ -216,14 +221,14 @@ float share_of(const Grid& grid, const Grid& whole, const glm::vec3& position) {
     return std::max(least, 0.0f) / kFading;
 }
 
-/// Returns the irradiance of a point by all levels; in w: 1 if faces were found, else 0.
-glm::vec4 irradiance_by(std::span<const LitLevel> levels, const SurfacePoint& at) {
+/// Returns the irradiance of a point by all levels; in w: 1 if faces were found, else 0. `sights`: of each.
+glm::vec4 irradiance_by(std::span<const LitLevel> levels, std::span<Sights> sights, const SurfacePoint& at) {
     glm::vec4 sum(0.0f);
     float left = 1;
     for (size_t i = levels.size(); i-- > 0 && left > 0;) {
         const float share = share_of(levels[i].space->grid(), levels[0].space->grid(), at.position);
         if (!(share > 0)) continue;
-        const glm::vec4 found = irradiance_at(*levels[i].space, levels[i].irradiance, at);
+        const glm::vec4 found = found_by(levels[i], sights[i], at);
         if (!(found.w > 0)) continue;
         sum += left * share * found;
         left *= 1 - share;
@@ -233,14 +238,9 @@ glm::vec4 irradiance_by(std::span<const LitLevel> levels, const SurfacePoint& at
 
 }  // namespace
 
-glm::vec4 irradiance_at(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at) {
-    return is_near(space.grid(), at.position) ? mean_of(Reader(space, irradiance, at).read())
-                                              : glm::vec4(0.0f);
-}
-
 glm::vec4 irradiance_at(const Space& space, std::span<const glm::vec3> irradiance, const SurfacePoint& at,
-                        const glm::vec3& air) {
-    return is_near(space.grid(), at.position) ? mean_of(Reader(space, irradiance, at, air).read())
+                        const glm::ivec3& air, Sights& sights) {
+    return is_near(space.grid(), at.position) ? mean_of(Reader(space, irradiance, at, sights, air).read())
                                               : glm::vec4(0.0f);
 }
 
@@ -250,10 +250,12 @@ std::vector<glm::vec4> read_back(std::span<const LitLevel> levels, std::span<con
     std::atomic<size_t> none{0};
     parallel_ranges(surfaces.size(), kPixelsAtOnce, [&](size_t first, size_t last) {
         size_t without = 0;
+        std::vector<Sights> sights;
+        for (const LitLevel& level : levels) sights.emplace_back(*level.space);
         for (size_t i = first; i < last; ++i) {
             const SurfacePoint& at = surfaces[i];
             if (!(at.radius > 0)) continue;
-            const glm::vec4 found = irradiance_by(levels, at);
+            const glm::vec4 found = irradiance_by(levels, sights, at);
             without += !(found.w > 0);
             const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
             light[i] = glm::vec4((r.kd + r.ks) / kPi * glm::vec3(found), 0);

@@ -1,4 +1,5 @@
 // Transport of light between faces: form factors first.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <initializer_list>
@@ -11,6 +12,7 @@
 #include "gi/engines/volume/directions.h"
 #include "gi/engines/volume/first_bounce.h"
 #include "gi/engines/volume/propagation.h"
+#include "gi/engines/volume/sights.h"
 #include "gi/engines/volume/sweep.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
@@ -48,6 +50,33 @@ std::vector<glm::vec3> gathered(const Space& space, const std::vector<glm::vec3>
     while (bounce.advance()) {
     }
     return {bounce.irradiance().begin(), bounce.irradiance().end()};
+}
+
+// More pairs of cells than answers are remembered, asked again and again in any order; also cells beside the
+// grid, before faces of its outermost voxels.
+TEST(VolumeSights, RememberedAnswersAreThoseOfTheAir) {
+    const Space space = make_space(unit_cube());
+    Sights sights(space);
+    Random random(3);
+    const auto below = [&](int count) { return static_cast<int>(count * random.uniform()); };
+    std::vector<glm::ivec3> airs;
+    for (const glm::ivec3 size = space.grid().size; airs.size() < 40;) {
+        const glm::ivec3 cell(below(size.x), below(size.y), below(size.z));
+        if (space.voxels.is_air(cell)) airs.push_back(cell);
+    }
+    size_t seen = 0, hidden = 0, wrong = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const glm::ivec3 from = airs[static_cast<size_t>(below(40))];
+        const Face& face = space.faces.all()[static_cast<size_t>(below(100)) * 37 % space.faces.all().size()];
+        const glm::ivec3 to = space.cell_before(face), away = glm::abs(to - from);
+        const bool sees = std::max({away.x, away.y, away.z}) <= 1 ||
+                          space.air.sees(glm::vec3(from) + 0.5f, glm::vec3(to) + 0.5f);
+        wrong += sights.see(from, to) != sees;
+        ++(sees ? seen : hidden);
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(seen, 1000u);
+    EXPECT_GT(hidden, 1000u);
 }
 
 // Howell's catalogue C-11 and C-14, unit squares.
