@@ -20,19 +20,11 @@ constexpr float kWhole = 3.54490770f;
 /// A cosine with a flux of 1: Y00 / pi times pi, and Y1 / pi times 2 pi / 3.
 constexpr float kCosine0 = kY0, kCosine1 = kY1 * 2 / 3;
 
-/// How a lobe passes to the neighbour along +x: the factors of the bands there, of the bands here. All others
-/// are 0. For the neighbour along -x those between bands change their sign.
-struct Step {
-    float flux_flux = 0;    ///< Y00 from Y00
-    float flux_along = 0;   ///< Y00 from Y1 along x
-    float along_flux = 0;   ///< Y1 along x from Y00
-    float along_along = 0;  ///< Y1 along x from Y1 along x
-    float side_side = 0;    ///< Y1 along y from Y1 along y, and likewise z
-};
+}  // namespace
 
 /// Integrates over the five faces of the neighbour, seen from the middle of the voxel: what meets a face goes
 /// on as a cosine about the face's normal.
-Step make_step() {
+Propagation::Step Propagation::make_step() {
     constexpr int kParts = 64;
     double far = 0, far_x = 0, side = 0, side_x = 0, side_y = 0;  // solid angle; direction times solid angle
     for (int i = 0; i < kParts; ++i)
@@ -58,14 +50,7 @@ Step make_step() {
     return step;
 }
 
-const Step& step_between() {
-    static const Step step = make_step();
-    return step;
-}
-
-}  // namespace
-
-Propagation::Propagation(const Space& space) : space_(space) {
+Propagation::Propagation(const Space& space) : space_(space), step_(make_step()) {
     const Grid& grid = space.grid();
     for (const Face& face : space.faces.all()) {
         const glm::ivec3 cell = space.cell_before(face);
@@ -93,9 +78,26 @@ void Propagation::begin(std::span<const glm::vec3> radiance, uint32_t iterations
             inject(grid.cell(cells_[face]), space_.faces.all()[face].normal, kPi * area * radiance[face]);
 }
 
+/// Adds what comes to a cell from its neighbours along an axis, which the compiler knows: with one loop over
+/// all sides, lobes stayed in memory.
+template <size_t axis>
+void Propagation::add_neighbours(const glm::ivec3& cell, uint32_t number, uint32_t stride, Lobe& sum) const {
+    constexpr size_t kAlong = axis + 1, kU = (axis + 1) % 3 + 1, kV = (axis + 2) % 3 + 1;
+    const Step step = step_;
+    const auto add = [&](const Lobe& lobe, float way) {
+        sum.bands[0] += step.flux_flux * lobe.bands[0] + way * step.flux_along * lobe.bands[kAlong];
+        sum.bands[kAlong] += way * step.along_flux * lobe.bands[0] + step.along_along * lobe.bands[kAlong];
+        sum.bands[kU] += step.side_side * lobe.bands[kU];
+        sum.bands[kV] += step.side_side * lobe.bands[kV];
+    };
+    // From the neighbour at a side light comes the opposite way.
+    if (cell[axis] + 1 < space_.grid().size[axis]) add(now_[number + stride], -1);
+    if (cell[axis] > 0) add(now_[number - stride], 1);
+}
+
 void Propagation::iterate() {
     const Grid& grid = space_.grid();
-    const Step step = step_between();
+    const Step& step = step_;
     const auto numbers = space_.voxels.numbers();
     // Light that meets an occupied voxel: all that would pass to it.
     parallel_ranges(cells_.size(), kFacesAtOnce, [&](size_t first, size_t last) {
@@ -110,6 +112,8 @@ void Propagation::iterate() {
         }
     });
     const auto rows = static_cast<size_t>(grid.size.y) * static_cast<size_t>(grid.size.z);
+    const std::array<uint32_t, 3> strides = {1, static_cast<uint32_t>(grid.size.x),
+                                             static_cast<uint32_t>(grid.size.x * grid.size.y)};
     parallel_ranges(rows, kRowsATask, [&](size_t first, size_t last) {
         for (size_t row = first; row < last; ++row)
             for (int x = 0; x < grid.size.x; ++x) {
@@ -117,21 +121,11 @@ void Propagation::iterate() {
                                       static_cast<int>(row) / grid.size.y);
                 const uint32_t number = grid.number(cell);
                 Lobe sum;
-                if (numbers[number] == Voxels::kAir)
-                    for (int side = 0; side < kSides; ++side) {
-                        // From the neighbour at this side light comes the opposite way.
-                        const glm::ivec3 from = cell + step_of(side);
-                        if (!grid.holds(from)) continue;
-                        const Lobe& lobe = now_[grid.number(from)];
-                        const float way = static_cast<float>(-sign_of(side));
-                        const auto axis = static_cast<size_t>(axis_of(side));
-                        const Vector along = lobe.bands[axis + 1];
-                        sum.bands[0] += step.flux_flux * lobe.bands[0] + way * step.flux_along * along;
-                        sum.bands[axis + 1] +=
-                            way * step.along_flux * lobe.bands[0] + step.along_along * along;
-                        for (const size_t other : {(axis + 1) % 3 + 1, (axis + 2) % 3 + 1})
-                            sum.bands[other] += step.side_side * lobe.bands[other];
-                    }
+                if (numbers[number] == Voxels::kAir) {
+                    add_neighbours<0>(cell, number, strides[0], sum);
+                    add_neighbours<1>(cell, number, strides[1], sum);
+                    add_neighbours<2>(cell, number, strides[2], sum);
+                }
                 next_[number] = sum;
             }
     });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,9 +40,22 @@ class Propagation {
     struct Lobe {
         std::array<Vector, 4> bands{};
     };
+    /// How a lobe passes to the neighbour along +x: the factors of the bands there, of the bands here. All
+    /// others are 0. For the neighbour along -x those between bands change their sign.
+    struct Step {
+        float flux_flux = 0;    ///< Y00 from Y00
+        float flux_along = 0;   ///< Y00 from Y1 along x
+        float along_flux = 0;   ///< Y1 along x from Y00
+        float along_along = 0;  ///< Y1 along x from Y1 along x
+        float side_side = 0;    ///< Y1 along y from Y1 along y, and likewise z
+    };
+    static Step make_step();
+    template <size_t axis>
+    void add_neighbours(const glm::ivec3& cell, uint32_t number, uint32_t stride, Lobe& sum) const;
     void iterate();
 
     const Space& space_;
+    const Step step_;
     std::vector<Lobe> now_, next_;    ///< by cell
     std::vector<glm::vec3> arrived_;  ///< by face, W
     std::vector<uint32_t> cells_;     ///< by face: the cell before it; none if it is outside
