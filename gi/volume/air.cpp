@@ -89,11 +89,14 @@ bool Air::sees(const glm::vec3& from, const glm::vec3& to) const {
     const glm::ivec3 most = grid_.size - 1;
     glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(from)), glm::ivec3(0), most);
     const glm::ivec3 end = glm::clamp(glm::ivec3(glm::floor(to)), glm::ivec3(0), most);
+    // The line crosses the border b of an axis at b * inverse - start of its way, at no place if it is level.
     glm::ivec3 step;
-    glm::vec3 inverse;
+    glm::vec3 inverse, start;
     for (int axis = 0; axis < 3; ++axis) {
+        const bool level = !(std::abs(way[axis]) > 1e-9f);
         step[axis] = way[axis] < 0 ? -1 : 1;
-        inverse[axis] = std::abs(way[axis]) > 1e-9f ? 1 / way[axis] : std::numeric_limits<float>::infinity();
+        inverse[axis] = level ? 0 : 1 / way[axis];
+        start[axis] = level ? -std::numeric_limits<float>::infinity() : from[axis] * inverse[axis];
     }
     // Crosses cubes of free cells at a time; ends when the last cell is in the cube.
     const int limit = 3 * (most.x + most.y + most.z + 3);
@@ -103,31 +106,27 @@ bool Air::sees(const glm::vec3& from, const glm::vec3& to) const {
         const glm::ivec3 away = glm::abs(end - cell);
         const bool last = std::max({away.x, away.y, away.z}) < free;
         if (last && distance > 0) return true;
-        float nearest = std::numeric_limits<float>::infinity();
-        int through = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (std::isinf(inverse[axis])) continue;
-            const int border = step[axis] > 0 ? cell[axis] + free : cell[axis] - free + 1;
-            const float at = (static_cast<float>(border) - from[axis]) * inverse[axis];
-            if (at >= nearest) continue;
-            nearest = at;
-            through = axis;
-        }
+        const auto border_at = [&](int axis) {
+            const int border = cell[axis] + (step[axis] > 0 ? free : 1 - free);
+            return static_cast<float>(border) * inverse[axis] - start[axis];
+        };
+        const float x = border_at(0), y = border_at(1), z = border_at(2);
+        const float nearest = std::min({x, y, z});
         const float left = last ? 1.0f : nearest;
         if (distance == 0 && !sees_in(cell, from + way * entered, from + way * left)) return false;
         if (last) return true;
         entered = nearest;
         const glm::vec3 place = from + way * nearest;
-        glm::ivec3 next;
-        for (int axis = 0; axis < 3; ++axis) {
-            // The line never turns back, and stays in the cube along the other axes.
-            const int within = static_cast<int>(std::floor(place[axis]));
-            next[axis] = step[axis] > 0 ? std::clamp(within, cell[axis], cell[axis] + free - 1)
-                                        : std::clamp(within, cell[axis] - free + 1, cell[axis]);
-        }
-        next[through] = cell[through] + step[through] * free;
-        if (next[through] < 0 || next[through] > most[through]) return false;
-        cell = glm::clamp(next, glm::ivec3(0), most);
+        const int through = x <= nearest ? 0 : y <= nearest ? 1 : 2;
+        // The line never turns back, and stays in the cube along the other axes, so it is in the grid.
+        const auto next = [&](int axis) {
+            const int low = cell[axis] - (step[axis] > 0 ? 0 : free - 1);
+            return std::clamp(static_cast<int>(place[axis]), low, low + free - 1);
+        };
+        glm::ivec3 there(next(0), next(1), next(2));
+        there[through] = cell[through] + step[through] * free;
+        if (there[through] < 0 || there[through] > most[through]) return false;
+        cell = glm::clamp(there, glm::ivec3(0), most);
     }
     return false;
 }
