@@ -68,7 +68,7 @@ std::vector<glm::dvec3> OccupancyGrid::occupied_middles() const {
 
 OccupancyGrid::Sight OccupancyGrid::look(const glm::dvec3& from, const glm::dvec3& along) const {
     const glm::dvec3 place = (from - low_) / cell_;
-    glm::ivec3 at(glm::floor(place));
+    glm::ivec3 at = cell_of(from);
     if (!inside(at)) return {0, false};
     glm::ivec3 step(0);
     glm::dvec3 next(std::numeric_limits<double>::infinity()), between = next;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
 namespace lucarne::viewer {
@@ -24,6 +25,10 @@ class OccupancyGrid {
     bool occupied(const glm::ivec3& at) const { return inside(at) && cells_[index(at)] != 0; }
     /// Returns the middle of a cell.
     glm::dvec3 middle(const glm::ivec3& at) const { return low_ + (glm::dvec3(at) + .5) * cell_; }
+    /// Returns the cell of a place, which may lie outside the grid.
+    glm::ivec3 cell_of(const glm::dvec3& place) const {
+        return glm::ivec3(glm::floor((place - low_) / cell_));
+    }
     /// Returns the middles of all cells that contain points.
     std::vector<glm::dvec3> occupied_middles() const;
 

@@ -23,7 +23,10 @@ constexpr double kLeastHeight = 1.9;  ///< free height for a person to stand
 constexpr double kWideEnough = 2;     ///< distance to the nearest wall from which a place gets no better
 constexpr double kElbowRoom = 0.7;    ///< distance to what stands beside and behind the eye
 constexpr double kHeadRoom = 0.3;     ///< distance to what is above the eye
-constexpr double kSameFloor = 0.3;    ///< difference in height of places on one floor
+constexpr double kClear = 1.2;        ///< distance to the nearest thing in a picture that fills no part of it
+/// Half of the width and the height of a picture's middle, in distances from the eye.
+constexpr glm::dvec2 kHalfPicture{.6, .6};
+constexpr double kSameFloor = 0.3;  ///< difference in height of places on one floor
 constexpr double kLampSpacing = 5;
 constexpr double kHighestLamp = 4;                  ///< above the floor
 constexpr double kLeastAway = .4, kMostAway = 1.5;  ///< of grazing light from its wall
@@ -44,6 +47,7 @@ constexpr double kBetweenViews = 1.5;                        ///< distance betwe
 constexpr double kWorthAView = .5;                           ///< share of the best score
 constexpr double kStepBack = .2;                             ///< length of a step, at least
 constexpr double kNearlyAsGood = .85;                        ///< share of the most space ahead
+constexpr double kNearlyAsFull = 1 / 1.5;                    ///< share of the most that a picture shows
 constexpr double kLowestStation = 1, kHighestStation = 2.6;  ///< over the floor
 constexpr double kFloorAround = 1.5;  ///< distance to a place to stand; there are no points below a tripod
 constexpr double kLeastOfFloor = .5;  ///< share of the size of the floor from which most is seen
@@ -117,20 +121,59 @@ double roominess(const OccupancyGrid& grid, const glm::dvec3& eye, double metre)
     return area * nearest;
 }
 
-/// Steps back as far as the room allows.
+/// What the search for a view asks.
+struct Survey {
+    const OccupancyGrid& grid;
+    std::vector<glm::dvec3> cells;  ///< the middles of those that contain points
+    double metre;                   ///< world units
+};
+
+/// The pyramid that the middle of a level picture shows.
+struct Frame {
+    glm::dvec3 eye, ahead;
+
+    /// Returns the distance of what lies at a place; 0: it is not in the middle.
+    double depth_of(const glm::dvec3& place) const {
+        const glm::dvec3 to = place - eye;
+        const double depth = dot(to, ahead), aside = to.y * ahead.x - to.x * ahead.y;
+        const bool shown =
+            std::abs(aside) <= kHalfPicture.x * depth && std::abs(to.z) <= kHalfPicture.y * depth;
+        return shown ? depth : 0;
+    }
+};
+
+/// Returns the distance to the nearest thing in the middle of a picture, at most `most`. What is low counts,
+/// too: a rail or a wire closely before the eye crosses the whole picture.
+double free_before(const OccupancyGrid& grid, const Frame& frame, double most) {
+    const int reach = static_cast<int>(most / grid.cell()) + 1;
+    const glm::ivec3 middle = grid.cell_of(frame.eye);
+    double nearest = most;
+    for (int z = -reach; z <= reach; ++z)
+        for (int y = -reach; y <= reach; ++y)
+            for (int x = -reach; x <= reach; ++x) {
+                const glm::ivec3 at = middle + glm::ivec3(x, y, z);
+                if (at == middle || !grid.occupied(at)) continue;
+                const double depth = frame.depth_of(grid.middle(at));
+                if (depth > 0) nearest = std::min(nearest, depth);
+            }
+    return nearest;
+}
+
+/// Steps back as far as the room allows, to where nothing stands closely before the eye.
 glm::dvec3 step_back(const OccupancyGrid& grid, const glm::dvec3& eye, const glm::dvec3& ahead,
                      double metre) {
     const glm::dvec3 aside(-ahead.y, ahead.x, 0);
     const double room = std::max(kElbowRoom * metre, grid.cell()),
                  step = std::max(grid.cell() / 2, kStepBack * metre);
-    glm::dvec3 at = eye;
+    glm::dvec3 at = eye, clear = eye;
     for (double left = grid.look(eye, -ahead).distance - room; left > step; left -= step) {
         const glm::dvec3 next = at - ahead * step;
         if (grid.look(next, aside).distance < room || grid.look(next, -aside).distance < room) break;
         if (grid.look(next, {0, 0, 1}).distance < kHeadRoom * metre) break;
         at = next;
+        if (free_before(grid, {at, ahead}, kClear * metre) == kClear * metre) clear = at;
     }
-    return at;
+    return clear;
 }
 
 double preference(const glm::dvec3& v) {
@@ -145,21 +188,24 @@ struct RoomView {
 
 /// Finds where to stand near a place, or at it (`exactly`), and the horizontal direction in which a picture
 /// from there shows the most space. Most rooms are as long one way as the other: of directions that are
-/// nearly as good, one is chosen that more or other points do not change.
-RoomView look_along_the_room(const OccupancyGrid& grid, const glm::dvec3& near, double metre,
-                             bool exactly = false) {
-    std::array<glm::dvec3, kAzimuths> eyes;
+/// nearly as good, and show nearly as many things, one is chosen that more or other points do not change.
+RoomView look_along_the_room(const Survey& survey, const glm::dvec3& near, bool exactly = false) {
+    const auto& [grid, cells, metre] = survey;
+    const double clear = kClear * metre;
+    std::array<Frame, kAzimuths> frames;
     std::array<double, kAzimuths> space{};
     for (int i = 0; i < kAzimuths; ++i) {
-        eyes[i] = exactly ? near : step_back(grid, near, direction(azimuth_of(i), 0), metre);
+        const glm::dvec3 ahead = direction(azimuth_of(i), 0);
+        const glm::dvec3 eye = exactly ? near : step_back(grid, near, ahead, metre);
+        frames[i] = {eye, ahead};
         // Square roots, so that a column in front outweighs the length of what is beside it.
         for (double beside = -2; beside <= 2; beside += .5)
-            space[i] += std::sqrt(grid.look(eyes[i], direction(azimuth_of(i + beside), 0)).distance);
-        // A wall beside the eye fills a side of the picture.
+            space[i] += std::sqrt(grid.look(eye, direction(azimuth_of(i + beside), 0)).distance);
+        // A wall beside the eye fills a side of the picture, and what is closely before it the middle.
         const glm::dvec3 aside = direction(azimuth_of(i) + std::numbers::pi / 2, 0);
-        const double narrow =
-            std::min(grid.look(eyes[i], aside).distance, grid.look(eyes[i], -aside).distance);
+        const double narrow = std::min(grid.look(eye, aside).distance, grid.look(eye, -aside).distance);
         space[i] *= std::pow(std::min(narrow, kWideEnough * metre), .25);
+        space[i] *= free_before(grid, frames[i], clear) / clear;
     }
     const double most = *std::ranges::max_element(space);
     const auto best_near = [&](int i) {
@@ -167,12 +213,17 @@ RoomView look_along_the_room(const OccupancyGrid& grid, const glm::dvec3& near, 
             if (space[(i + beside + kAzimuths) % kAzimuths] > space[i]) return false;
         return true;
     };
+    std::array<double, kAzimuths> things{};  // in the pictures of good directions
+    for (int i = 0; i < kAzimuths; ++i)
+        if (space[i] >= kNearlyAsGood * most && best_near(i))
+            things[i] = static_cast<double>(std::ranges::count_if(
+                cells, [&](const glm::dvec3& cell) { return frames[i].depth_of(cell) > 0; }));
+    const double fullest = *std::ranges::max_element(things);
     RoomView best;
     for (int i = 0; i < kAzimuths; ++i) {
-        const glm::dvec3 ahead = direction(azimuth_of(i), 0);
-        const bool good = space[i] >= kNearlyAsGood * most && best_near(i);
-        if (good && (best.space == 0 || preference(ahead) > preference(best.ahead)))
-            best = {eyes[i], ahead, space[i]};
+        const bool good = things[i] > 0 && things[i] >= kNearlyAsFull * fullest;
+        if (good && (best.space == 0 || preference(frames[i].ahead) > preference(best.ahead)))
+            best = {frames[i].eye, frames[i].ahead, space[i]};
     }
     return best;
 }
@@ -229,17 +280,16 @@ struct PlacedView {
 };
 
 /// Returns the widest view from where a scanner stood, if it is about as wide as `widest`; else that one.
-PlacedView from_station(const OccupancyGrid& grid, const PlacedView& widest,
-                        std::span<const glm::dvec3> stations, const std::vector<Place>& places,
-                        const std::vector<size_t>& floors, double metre) {
+PlacedView from_station(const Survey& survey, const PlacedView& widest, std::span<const glm::dvec3> stations,
+                        const std::vector<Place>& places, const std::vector<size_t>& floors) {
     const double least = kLeastOfFloor * static_cast<double>(floors[widest.under]);
     PlacedView best = widest;
     best.view.space *= kNearlyAsGood;
     bool found = false;
     for (const glm::dvec3& station : stations) {
-        const auto under = place_under(station, places, floors, least, metre);
-        if (!under || !enclosed(grid, station)) continue;
-        const RoomView view = look_along_the_room(grid, station, metre, true);
+        const auto under = place_under(station, places, floors, least, survey.metre);
+        if (!under || !enclosed(survey.grid, station)) continue;
+        const RoomView view = look_along_the_room(survey, station, true);
         if (view.space > best.view.space) best = {view, *under}, found = true;
     }
     return found ? best : widest;
@@ -356,14 +406,14 @@ Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit,
     // Of the roomiest places, the one with the widest view: no column stands before it.
     const std::vector<size_t> best = best_places(in_rooms, score, metre);
     if (best.empty()) return found;
+    const Survey survey{grid, grid.occupied_middles(), metre};
     std::vector<RoomView> views(best.size());
     parallel_ranges(best.size(), 1, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
-            views[i] = look_along_the_room(grid, in_rooms[best[i]].eye, metre);
+        for (size_t i = first; i < last; ++i) views[i] = look_along_the_room(survey, in_rooms[best[i]].eye);
     });
     const auto widest = std::ranges::max_element(views, {}, &RoomView::space);
     const auto [view, under] = from_station(
-        grid, {*widest, best[static_cast<size_t>(widest - views.begin())]}, stations, in_rooms, floor, metre);
+        survey, {*widest, best[static_cast<size_t>(widest - views.begin())]}, stations, in_rooms, floor);
     found.enclosed_share = static_cast<double>(in_rooms.size()) / static_cast<double>(places.size());
     StandingPlace place;
     place.eye = view.eye;

@@ -65,6 +65,41 @@ TEST(Site, ViewsFromOtherEndsOrPlacesAreNotAlike) {
 }
 
 /// A wide bench along half of the room, as high as a person's chest, under a cable tray.
+TEST(Site, NothingStandsCloselyBeforeTheEye) {
+    std::vector<dvec3> points;
+    add_faces(points, kRoom, 60000, true, 1);
+    // Rails before both ends, lower than the eye but in its picture.
+    for (const double y : {201.6, 210.4})
+        for (double x = kRoom[0].x; x < kRoom[1].x; x += .01) points.emplace_back(x, y, kRoom[0].z + 1.4);
+    const Site site = survey_site(points, kRoom, 1);
+    ASSERT_TRUE(site.inside);
+    const gi::SceneCamera camera = inside_view(site, {});
+    const dvec3 forward = normalize(camera.target - camera.position);
+    double nearest = 100;
+    for (const dvec3& point : points) {
+        const double depth = dot(point - camera.position, forward);
+        if (depth <= 0) continue;
+        const glm::dvec2 at = place(camera, point, 16. / 9);
+        if (std::abs(at.x) < .8 && std::abs(at.y) < .8) nearest = std::min(nearest, depth);
+    }
+    EXPECT_GT(nearest, 1.1);
+    EXPECT_GT(std::abs(site.inside->ahead.y), .9) << "still along the room";
+}
+
+TEST(Site, OfTwoWaysThatAreAsLongTheOneWithThingsIsSeen) {
+    for (const double y : {200.0, 210.5}) {
+        std::vector<dvec3> points;
+        add_faces(points, kRoom, 60000, true, 1);
+        for (int shelf = 0; shelf < 15; ++shelf) {
+            const dvec3 low(100, y + .1 * shelf, 10);
+            add_faces(points, {low, low + dvec3(5, .05, 2.4)}, 4000, true, 2);
+        }
+        const Site site = survey_site(points, kRoom, 1);
+        ASSERT_TRUE(site.inside);
+        EXPECT_GT(site.inside->ahead.y * (y - 206), .9) << y;
+    }
+}
+
 TEST(Site, OneStandsOnTheFloorNotOnFurniture) {
     std::vector<dvec3> points;
     const Box high = {kRoom[0], dvec3(105, 212, 13.6)}, bench = {kRoom[0], dvec3(102.5, 212, 11.3)};
