@@ -252,9 +252,14 @@ Result<void> complete(CacheWriter& writer, SourceHeader header, const BuildOptio
     LUCARNE_ASSIGN(header.station_colours,
                    timed(report, "colours", [&] { return survey_colours(writer, header); }));
     if (options.fill) {
-        LUCARNE_ASSIGN(header.filling,
+        LUCARNE_ASSIGN(const HoleSurvey survey,
                        timed(report, "holes", [&] { return fill_holes(writer, header, options.memory); }));
-        report.filled = header.filling->points;
+        header.filling = survey.filling;
+        report.filled = survey.filling.points;
+        if (survey.station) {
+            header.estimated_stations.push_back(*survey.station);
+            ++report.estimated_stations;
+        }
     }
     return timed(report, "write", [&] { return writer.finish(header); });
 }

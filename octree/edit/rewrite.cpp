@@ -411,7 +411,9 @@ Result<EditReport> Rewrite::run(CacheWriter* writer) {
     }
     // The holes are others now.
     if (header.filling) {
-        LUCARNE_ASSIGN(header.filling, fill_holes(*writer, header, options_.memory));
+        LUCARNE_ASSIGN(const HoleSurvey survey, fill_holes(*writer, header, options_.memory));
+        header.filling = survey.filling;
+        if (survey.station) header.estimated_stations.push_back(*survey.station);
     }
     LUCARNE_TRY(writer->finish(header));
     report_.nodes = writer->nodes();

@@ -11,6 +11,7 @@
 #include "octree/cache/writer.h"
 #include "octree/codec/payload.h"
 #include "octree/holes/holes.h"
+#include "octree/stations/lone_station.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/filling.h"
 #include "octree/tree/point_normals.h"
@@ -174,13 +175,27 @@ std::vector<std::byte> in_prefix_order(const std::vector<std::byte>& records,
     return ordered;
 }
 
+/// Returns the station that saw all points from over a round hole of a floor, if there is such a place, and
+/// enters it in the sample.
+std::optional<glm::vec3> station_over(const glm::vec3& tripod, HoleSample& sample) {
+    std::vector<glm::vec3> points;
+    points.reserve(sample.points.size());
+    for (const HolePoint& point : sample.points) points.push_back(point.position);
+    const auto station = find_lone_station(points, tripod);
+    if (!station) return station;
+    sample.stations = {*station};
+    for (HolePoint& point : sample.points) point.station = 0;
+    return station;
+}
+
 }  // namespace
 
-Result<FillingSection> fill_holes(CacheWriter& writer, const SourceHeader& header, uint64_t memory) {
-    FillingSection section;
+Result<HoleSurvey> fill_holes(CacheWriter& writer, const SourceHeader& header, uint64_t memory) {
+    HoleSurvey survey;
+    FillingSection& section = survey.filling;
     const auto* area = header.schema.find(io::names::area);
     const bool normals = header.schema.find(io::names::normal) || header.schema.find(io::names::normal_oct);
-    if (!area || area->type != io::ScalarType::u16 || !normals) return section;
+    if (!area || area->type != io::ScalarType::u16 || !normals) return survey;
     SampleReader reader(header);
     LUCARNE_TRY(writer.visit_even(
         header,
@@ -188,8 +203,19 @@ Result<FillingSection> fill_holes(CacheWriter& writer, const SourceHeader& heade
         [&](const Cube&, const NodeData& data, float floor) { reader.add(data, floor); }));
     const HoleLimits limits{.most_points = std::min(kMostFilled, header.points / kPointsOfSurfel),
                             .memory = memory / 4};
-    const auto points = find_holes(reader.take(), limits);
-    if (points.empty()) return section;
+    HoleSample sample = reader.take();
+    FoundHoles found = find_holes(sample, limits);
+    const bool unknown = sample.stations.empty() && header.estimated_stations.empty();
+    if (unknown && header.scans.size() == 1 && found.tripods.size() == 1) {
+        if (const auto station = station_over(found.tripods.front(), sample)) {
+            survey.station = {.scan = 0,
+                              .position = header.root.min + glm::dvec3(*station) / header.metres_per_unit,
+                              .saw_all = true};
+            found = find_holes(sample, limits);
+        }
+    }
+    const std::vector<FillPoint>& points = found.points;
+    if (points.empty()) return survey;
     section.schema = filling_schema(header.root);
     const auto records = records_of(points, header, section.schema);
     const std::vector<uint8_t> passes(points.size(), 0);
@@ -201,7 +227,7 @@ Result<FillingSection> fill_holes(CacheWriter& writer, const SourceHeader& heade
     section.bytes = payload.size();
     section.checksum = format::checksum(payload);
     LUCARNE_ASSIGN(section.offset, writer.append(payload));
-    return section;
+    return survey;
 }
 
 }  // namespace lucarne::octree

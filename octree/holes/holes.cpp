@@ -432,7 +432,7 @@ class HoleSearch {
             for (size_t j = 0; j < grids_.size(); ++j) mark(i, j);
     }
 
-    std::vector<FillPoint> run() {
+    FoundHoles run() {
         std::vector<Hole> holes;
         std::vector<Tripod> tripods;
         for (size_t i = 0; i < grids_.size(); ++i)
@@ -447,9 +447,10 @@ class HoleSearch {
             all += cells(holes[kept++]);
         holes.resize(kept);
         const int parts = 4 * all <= limits_.most_points ? 2 : 1;
-        std::vector<FillPoint> points;
-        for (const Hole& hole : holes) fill(hole, parts, points);
-        return points;
+        FoundHoles found;
+        for (const Hole& hole : holes) fill(hole, parts, found.points);
+        for (const Tripod& tripod : tripods) found.tripods.push_back(tripod.centre);
+        return found;
     }
 
  private:
@@ -521,7 +522,7 @@ class HoleSearch {
 
 }  // namespace
 
-std::vector<FillPoint> find_holes(const HoleSample& sample, const HoleLimits& limits) {
+FoundHoles find_holes(const HoleSample& sample, const HoleLimits& limits) {
     const float spacing = median_spacing(sample);
     glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
     for (const HolePoint& point : sample.points) {

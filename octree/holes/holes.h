@@ -28,6 +28,11 @@ struct FillPoint {
     float area = 0;                                        ///< m^2
 };
 
+struct FoundHoles {
+    std::vector<FillPoint> points;
+    std::vector<glm::vec3> tripods;  ///< the middles of round holes of floors, if no station is known, m
+};
+
 struct HoleLimits {
     size_t most_points = 1 << 17;    ///< of the result
     uint64_t memory = 256ull << 20;  ///< bytes for the search, beside the sample
@@ -38,6 +43,6 @@ struct HoleLimits {
 /// creases with other planes, and no station can have looked through it: it is hidden behind nearer points or
 /// below the tripod. Without stations only small holes of floors count that have nothing below them.
 /// The result does not depend on threads. Time and memory are bounded for any input.
-std::vector<FillPoint> find_holes(const HoleSample& sample, const HoleLimits& limits = {});
+FoundHoles find_holes(const HoleSample& sample, const HoleLimits& limits = {});
 
 }  // namespace lucarne::octree

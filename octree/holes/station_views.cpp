@@ -17,6 +17,8 @@ constexpr float kMostReach = 4;                       ///< cells of the map
 constexpr size_t kLeastPoints = 64;
 /// Share of a station's points below its lowest direction: mixed pixels, the tripod.
 constexpr float kBeyond = 0.001f;
+/// The lowest direction varies by as much (sine) around the station, most if its place was estimated.
+constexpr float kLowestVaries = 0.04f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -128,7 +130,7 @@ Sight StationViews::at(const glm::vec3& place, const glm::vec3& normal, float be
     for (const View& view : views_) {
         const glm::vec3 offset = place - view.position;
         const float range = glm::length(offset);
-        if (!(range > 0) || offset.z < view.lowest * range) continue;
+        if (!(range > 0) || offset.z < (view.lowest + kLowestVaries) * range) continue;
         const float seen = view.range[cell_of(offset)];
         if (seen > range * (1 + kRangeError) + behind) return Sight::through;
         // The range of the surface varies so much over a cell of the map.

@@ -232,8 +232,7 @@ Result<void> convert(ConvertOptions options) {
         log::info("{} fill holes of the scan; they are drawn, but never exported",
                   counted(report.filled, "synthetic surfels"));
     if (report.estimated_stations > 0)
-        log::info("{} estimated from the order of the points",
-                  counted(report.estimated_stations, "stations"));
+        log::info("{} estimated from the points", counted(report.estimated_stations, "stations"));
     if (report.estimated_normals > 0)
         log::info("normals of {} were estimated", counted(report.estimated_normals, "points"));
     const Summary summary(build.inputs, report.inputs);

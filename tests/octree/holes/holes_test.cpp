@@ -54,7 +54,7 @@ HoleSample floor_without(float side, const std::function<bool(const glm::vec2&)>
 TEST(Holes, TheDiscBelowATripodIsFilled) {
     const std::vector<Wall> walls = room();
     const std::vector<glm::vec3> stations{{2, 2, 1.7f}};
-    const auto points = find_holes(scan_walls(walls, stations));
+    const auto points = fill_points(scan_walls(walls, stations));
     ASSERT_FALSE(points.empty());
     const float expected = unseen_area(walls, stations, 0);
     EXPECT_GT(expected, 3);
@@ -73,7 +73,7 @@ TEST(Holes, ACornerInAShadowIsFilled) {
     std::vector<Wall> walls = room();
     add_box(walls, {4.8f, 2, 0}, {5.3f, 3, 1.2f}, false);
     const std::vector<glm::vec3> stations{{1.5f, 2.5f, 1.6f}, {2, 0.8f, 1.6f}};
-    const auto points = find_holes(scan_walls(walls, stations));
+    const auto points = fill_points(scan_walls(walls, stations));
     float on_floor = 0, on_wall = 0;
     int off = 0;
     for (const FillPoint& point : points) {
@@ -103,7 +103,7 @@ TEST(Holes, AWindowThatAStationLooksThroughStaysOpen) {
         open_wall(walls, 1.5f, 3, 0.9f, 2.2f);
         if (garden) walls.push_back({{12, -5, -1}, 6.0f * kZ, 15.0f * kY});
         const std::vector<glm::vec3> stations{{2, 2, 1.7f}};
-        const auto points = find_holes(scan_walls(walls, stations));
+        const auto points = fill_points(scan_walls(walls, stations));
         ASSERT_FALSE(points.empty()) << "the floor below the tripod";
         EXPECT_EQ(count(points, [](const FillPoint& point) { return std::abs(point.position.z) > 0.02f; }), 0)
             << garden;
@@ -119,7 +119,7 @@ TEST(Holes, ADoorStaysOpen) {
     walls[8 + 2] = {{6.2f, 0, 0}, 2.0f * kY, 3.0f * kZ};
     walls.push_back({{6.2f, 3, 0}, 2.0f * kY, 3.0f * kZ});
     walls.push_back({{6.2f, 2, 2.1f}, kY, 0.9f * kZ});
-    const auto points = find_holes(scan_walls(walls, {{2, 2, 1.7f}, {8, 3, 1.6f}}));
+    const auto points = fill_points(scan_walls(walls, {{2, 2, 1.7f}, {8, 3, 1.6f}}));
     ASSERT_FALSE(points.empty());
     EXPECT_EQ(count(points,
                     [](const FillPoint& point) {
@@ -133,7 +133,7 @@ TEST(Holes, ADoorStaysOpen) {
 TEST(Holes, TheBorderOfATerrainIsNoHole) {
     const std::vector<Wall> walls{{{-10, -10, 0}, 20.0f * kX, 20.0f * kY}};
     const std::vector<glm::vec3> stations{{1, 0, 1.7f}};
-    const auto points = find_holes(scan_walls(walls, stations));
+    const auto points = fill_points(scan_walls(walls, stations));
     const float expected = unseen_area({{{-1, -2, 0}, 4.0f * kX, 4.0f * kY}}, stations, 0);
     EXPECT_NEAR(filled_area(points), expected, 0.08f * expected);  // cells of 7 cm
 }
@@ -144,7 +144,7 @@ TEST(Holes, WithoutStationsOnlySmallHolesOfFloorsAreFilled) {
         return [=](const glm::vec2& at) { return glm::length(at - centre) < radius; };
     };
     const HoleSample sample = floor_without(8, disc(0.7f));
-    const auto points = find_holes(sample);
+    const auto points = fill_points(sample);
     EXPECT_NEAR(filled_area(points), 0.7f * 0.7f * std::numbers::pi_v<float>, 0.1f);
     EXPECT_EQ(count(points,
                     [&](const FillPoint& point) {
@@ -153,28 +153,28 @@ TEST(Holes, WithoutStationsOnlySmallHolesOfFloorsAreFilled) {
                                std::abs(point.colour.z - 0.25f) > 0.01f;
                     }),
               0);
-    EXPECT_FALSE(find_holes(floor_without(8, disc(1.3f))).empty()) << "below a tripod";
-    EXPECT_TRUE(find_holes(floor_without(8, disc(2.2f))).empty()) << "too large";
+    EXPECT_FALSE(fill_points(floor_without(8, disc(1.3f))).empty()) << "below a tripod";
+    EXPECT_TRUE(fill_points(floor_without(8, disc(2.2f))).empty()) << "too large";
     const auto hatch = [&](const glm::vec2& at) {
         return std::abs(at.x - 4) < 0.9f && std::abs(at.y - 4) < 0.9f;
     };
-    EXPECT_TRUE(find_holes(floor_without(8, hatch)).empty()) << "2.5 m across, and not round";
+    EXPECT_TRUE(fill_points(floor_without(8, hatch)).empty()) << "2.5 m across, and not round";
     // Without stations normals may face the wrong side; points above tell that this is a floor.
     HoleSample flipped = sample;
     for (HolePoint& point : flipped.points) point.normal = -kZ;
     flipped.points.push_back({.position = {1, 1, 2}, .normal = -kZ, .area = 4e-4f});
-    EXPECT_NEAR(filled_area(find_holes(flipped)), filled_area(points), 0.01f);
+    EXPECT_NEAR(filled_area(fill_points(flipped)), filled_area(points), 0.01f);
     // A pit: something is seen below.
     HoleSample pit = sample;
     pit.points.push_back({.position = {4, 4, -0.5f}, .normal = kZ, .area = 4e-4f});
-    EXPECT_TRUE(find_holes(pit).empty());
+    EXPECT_TRUE(fill_points(pit).empty());
     // The same hole in a wall may be a window.
     HoleSample wall = sample;
     for (HolePoint& point : wall.points) {
         std::swap(point.position.y, point.position.z);
         point.normal = -kY;
     }
-    EXPECT_TRUE(find_holes(wall).empty());
+    EXPECT_TRUE(fill_points(wall).empty());
     // A small hole of a wall is filled, unless something is seen through it, from whichever side.
     for (const float seen_at : {0.0f, -0.6f, 0.6f}) {
         HoleSample small = floor_without(8, disc(0.13f));
@@ -188,10 +188,10 @@ TEST(Holes, WithoutStationsOnlySmallHolesOfFloorsAreFilled) {
                                                      3.5f + 0.05f * static_cast<float>(i / 20)},
                                         .normal = -kY,
                                         .area = 25e-4f});
-        EXPECT_EQ(find_holes(small).empty(), seen_at != 0) << seen_at;
+        EXPECT_EQ(fill_points(small).empty(), seen_at != 0) << seen_at;
     }
     // A bay of the border.
-    EXPECT_TRUE(find_holes(floor_without(8, [](const glm::vec2& at) {
+    EXPECT_TRUE(fill_points(floor_without(8, [](const glm::vec2& at) {
                     return at.x < 0.9f && std::abs(at.y - 4) < 0.5f;
                 })).empty());
 }
@@ -213,7 +213,7 @@ TEST(Holes, WithoutStationsWallsAreFilledBelowTripods) {
     };
     const float expected = unseen_area(walls, stations, 3);
     EXPECT_GT(expected, 0.1f);
-    const auto points = find_holes(sample);
+    const auto points = fill_points(sample);
     EXPECT_NEAR(area(points), expected, 0.2f * expected);
     EXPECT_NEAR(filled_area(points), expected + unseen_area(walls, stations, 0), 0.15f);
     EXPECT_EQ(count(points, [&](const FillPoint& p) { return distance_to(walls, p.position) > 0.02f; }), 0);
@@ -225,14 +225,14 @@ TEST(Holes, WithoutStationsWallsAreFilledBelowTripods) {
                                                 0.3f * static_cast<float>(i / 20) / 20},
                                    .normal = -kX,
                                    .area = 4e-4f});
-        EXPECT_EQ(area(find_holes(more)) > 0, x < 6) << x;
+        EXPECT_EQ(area(fill_points(more)) > 0, x < 6) << x;
     }
     // A hole as large elsewhere may be a window.
     HoleSample window = sample;
     std::erase_if(window.points, [](const HolePoint& p) {
         return p.position.x < 0.1f && std::abs(p.position.y - 2.5f) < 0.5f && p.position.z < 0.5f;
     });
-    EXPECT_EQ(count(find_holes(window),
+    EXPECT_EQ(count(fill_points(window),
                     [](const FillPoint& p) { return p.position.x < 0.02f && p.position.z > 0.05f; }),
               0);
 }
@@ -243,39 +243,39 @@ TEST(Holes, BadInputIsHarmless) {
     const auto any = [&] {
         return glm::vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
     };
-    EXPECT_TRUE(find_holes({}).empty());
-    EXPECT_TRUE(find_holes({.points = {{.normal = kZ, .area = 1}}, .stations = {}}).empty());
+    EXPECT_TRUE(fill_points({}).empty());
+    EXPECT_TRUE(fill_points({.points = {{.normal = kZ, .area = 1}}, .stations = {}}).empty());
     HoleSample place{.points = std::vector<HolePoint>(100000, {.normal = kZ, .area = 1e-4f}), .stations = {}};
-    EXPECT_TRUE(find_holes(place).empty()) << "all at one place";
+    EXPECT_TRUE(fill_points(place).empty()) << "all at one place";
     HoleSample noise{.points = {}, .stations = {glm::vec3(0)}};
     for (int i = 0; i < 300000; ++i)
         noise.points.push_back(
             {.position = 20.0f * any(), .normal = glm::normalize(any()), .area = 1e-3f, .station = 0});
-    EXPECT_TRUE(find_holes(noise).empty()) << "outliers";
+    EXPECT_TRUE(fill_points(noise).empty()) << "outliers";
     for (HolePoint& point : noise.points) point.position *= 1e30f;
-    EXPECT_TRUE(find_holes(noise).empty()) << "larger than a scan can be";
+    EXPECT_TRUE(fill_points(noise).empty()) << "larger than a scan can be";
     // Normals that are all wrong, and shares from 0 to the scan's own size.
     HoleSample wrong = scan_walls(room(), {{2, 2, 1.7f}}, 400);
     for (HolePoint& point : wrong.points) {
         point.normal = glm::normalize(any());
         point.area *= static_cast<float>(std::exp2(40 * random.uniform() - 20));
     }
-    EXPECT_LE(find_holes(wrong, {.most_points = 1000}).size(), 1000u);
+    EXPECT_LE(fill_points(wrong, {.most_points = 1000}).size(), 1000u);
     // A ring around a hole that is larger than everything else.
     HoleSample ring = floor_without(8, [](const glm::vec2& at) { return glm::length(at - 4.0f) < 3.9f; });
-    EXPECT_TRUE(find_holes(ring).empty());
+    EXPECT_TRUE(fill_points(ring).empty());
     ring.stations = {{4, 4, 1}};
-    EXPECT_TRUE(find_holes(ring).empty());
+    EXPECT_TRUE(fill_points(ring).empty());
 }
 
 /// The surfels become coarser, or the smallest holes stay open, before there are too many.
 TEST(Holes, TheNumberOfSurfelsIsLimited) {
     const HoleSample sample = scan_walls(room(), {{2, 2, 1.7f}});
-    const size_t all = find_holes(sample).size();
-    const auto fewer = find_holes(sample, {.most_points = all / 2});
+    const size_t all = fill_points(sample).size();
+    const auto fewer = fill_points(sample, {.most_points = all / 2});
     EXPECT_LE(fewer.size(), all / 2);
     EXPECT_GT(filled_area(fewer), 3);
-    EXPECT_TRUE(find_holes(sample, {.most_points = 10}).empty());
+    EXPECT_TRUE(fill_points(sample, {.most_points = 10}).empty());
 }
 
 /// The virtual scan of the Cornell box: light that leaves one surface reaches the next.
@@ -284,7 +284,7 @@ TEST(Holes, LightOfTheCornellBoxStaysInside) {
     NormalOptions options;
     options.stations = scan.stations;
     const Estimate found = estimate(scan.cloud, options);
-    const auto points = find_holes(sample_of(scan, found));
+    const auto points = fill_points(sample_of(scan, found));
     const HoleErrors open = hole_errors("cornell", scan, found, {}, 50000),
                      filled = hole_errors("cornell", scan, found, points, 50000);
     std::printf("cornell: %.2f m2 filled, %.3f m2 of it off; rays that pass %.2f %% -> %.2f %%\n",

@@ -115,6 +115,10 @@ inline float unseen_area(const std::vector<Wall>& walls, const std::vector<glm::
     return of.area() * static_cast<float>(unseen) / static_cast<float>(side * side);
 }
 
+inline std::vector<FillPoint> fill_points(const HoleSample& sample, const HoleLimits& limits = {}) {
+    return find_holes(sample, limits).points;
+}
+
 inline float filled_area(const std::vector<FillPoint>& points) {
     float area = 0;
     for (const FillPoint& point : points) area += point.area;
