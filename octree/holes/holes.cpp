@@ -119,6 +119,15 @@ class HoleFinder {
         add_to(holes);
     }
 
+    /// Finds the holes that are narrower than three cells, if stations are known: the shadows of rails and
+    /// the strips behind mouldings. Wider ones are closed already.
+    void find_narrow(std::vector<Hole>& holes) {
+        narrow_ = true;
+        find_components();
+        std::erase_if(components_, [&](const Component& component) { return !is_hole(component); });
+        add_to(holes);
+    }
+
     /// Finds the holes of a wall that tripods hid from their stations.
     void find_below(const std::vector<Tripod>& tripods, std::vector<Hole>& holes) {
         if (tripods.empty() || std::abs(grid_.plane().normal.z) > kWall) return;
@@ -150,8 +159,11 @@ class HoleFinder {
     }
     PlaneCell state(const glm::ivec2& cell) const { return grid_[grid_.index(cell.x, cell.y)]; }
 
-    /// Whether a hidden cell has no surface around it. Gaps between single points have no such cells.
+    /// Whether a hidden cell belongs to a hole. Gaps between single points have no cell without surface
+    /// around. Narrow holes have none either, but all of their cells are known to be hidden from all
+    /// stations.
     bool is_core(const glm::ivec2& cell) const {
+        if (narrow_) return grid_.inside(cell.x, cell.y) && state(cell) == PlaneCell::hidden;
         return hidden(cell) && std::ranges::none_of(kAround, [&](const glm::ivec2& step) {
                    const glm::ivec2 next = cell + step;
                    return grid_.inside(next.x, next.y) && state(next) == PlaneCell::surface;
@@ -380,6 +392,7 @@ class HoleFinder {
     const Voxels& voxels_;
     const size_t plane_;
     const bool stations_;
+    bool narrow_ = false;
     float behind_ = -1;  ///< the sign of heights behind the plane
     std::vector<uint8_t> label_;
     std::vector<Component> components_;
@@ -437,6 +450,7 @@ class HoleSearch {
         std::vector<Tripod> tripods;
         for (size_t i = 0; i < grids_.size(); ++i)
             HoleFinder(grids_[i], voxels_, i, !views_.empty()).find(holes, tripods);
+        if (!views_.empty()) find_narrow(holes);
         find_below(tripods, holes);
         const auto cells = [](const Hole& hole) {
             return hole.cells.size() + hole.creases.size() + hole.shores.size();
@@ -461,14 +475,23 @@ class HoleSearch {
                 mark_creases(grids_[plane], grids_[other], kCreaseReach, kMostSteps - work_, creases_[plane]);
     }
 
+    void close(const std::vector<Hole>& holes) {
+        for (const Hole& hole : holes)
+            for (const uint32_t cell : hole.cells) grids_[hole.plane].set(cell, PlaneCell::surface);
+    }
+
+    void find_narrow(std::vector<Hole>& holes) {
+        close(holes);
+        for (size_t i = 0; i < grids_.size(); ++i) HoleFinder(grids_[i], voxels_, i, true).find_narrow(holes);
+    }
+
     /// Finds the holes of walls below tripods. Their floors, which are closed now, bound them.
     void find_below(const std::vector<Tripod>& tripods, std::vector<Hole>& holes) {
         if (tripods.empty()) return;
         const auto has_tripod = [&](size_t plane) {
             return std::ranges::any_of(tripods, [&](const Tripod& on) { return on.plane == plane; });
         };
-        for (const Hole& hole : holes)
-            for (const uint32_t cell : hole.cells) grids_[hole.plane].set(cell, PlaneCell::surface);
+        close(holes);
         for (size_t i = 0; i < grids_.size(); ++i) {
             for (size_t j = 0; j < grids_.size(); ++j)
                 if (has_tripod(j)) mark(i, j);

@@ -97,6 +97,20 @@ TEST(Holes, ACornerInAShadowIsFilled) {
     EXPECT_LT(on_floor, 1.1f * floor);
 }
 
+TEST(Holes, TheShadowOfARailIsFilledThoughItIsNarrowerThanThreeCells) {
+    std::vector<Wall> walls = room();
+    add_box(walls, {0, 0.5f, 1.1f}, {6, 0.57f, 1.17f}, false);
+    const std::vector<glm::vec3> stations{{3, 2.5f, 1.7f}};
+    const auto points = fill_points(scan_walls(walls, stations));
+    const float expected = unseen_area(walls, stations, 4, 400);
+    EXPECT_GT(expected, 0.4f);
+    float filled = 0;
+    for (const FillPoint& point : points)
+        if (std::abs(point.position.y) < 0.02f) filled += point.area;
+    EXPECT_NEAR(filled, expected, 0.35f * expected);
+    EXPECT_EQ(count(points, [&](const FillPoint& p) { return distance_to(walls, p.position) > 0.02f; }), 0);
+}
+
 TEST(Holes, AWindowThatAStationLooksThroughStaysOpen) {
     for (const bool garden : {true, false}) {
         std::vector<Wall> walls = room();
