@@ -107,7 +107,7 @@ TEST(Holes, TheShadowOfARailIsFilledThoughItIsNarrowerThanThreeCells) {
     float filled = 0;
     for (const FillPoint& point : points)
         if (std::abs(point.position.y) < 0.02f) filled += point.area;
-    EXPECT_NEAR(filled, expected, 0.35f * expected);
+    EXPECT_NEAR(filled, expected, 0.15f * expected);
     EXPECT_EQ(count(points, [&](const FillPoint& p) { return distance_to(walls, p.position) > 0.02f; }), 0);
 }
 
