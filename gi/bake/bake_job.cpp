@@ -21,7 +21,7 @@ constexpr double kThousandths = 1000;
 
 }  // namespace
 
-BakeJob::BakeJob(BakeOrder order, std::function<void()> published)
+BakeJob::BakeJob(BakeOrder order, std::function<void(const Status&)> published)
     : order_(std::move(order)), published_(std::move(published)) {
     thread_ = std::thread([this] {
         auto done = guarded(order_.engine->name, [this] { return compute(); });
@@ -32,7 +32,7 @@ BakeJob::BakeJob(BakeOrder order, std::function<void()> published)
             status_.step.clear();
         }
         changed_.notify_all();
-        published_();
+        published_(status());
     });
 }
 
@@ -72,7 +72,7 @@ void BakeJob::note(const Precomputation& work, std::string_view next) {
     const auto now = std::chrono::steady_clock::now();
     if (!news && now - told_ < kBetweenNews) return;
     told_ = now;
-    published_();
+    published_(status());
 }
 
 /// Returns work that continues from a kept file. Errors: it is damaged, or was made from another input.

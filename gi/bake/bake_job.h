@@ -36,10 +36,11 @@ struct BakeOrder {
 /// and keeps the result, also an unfinished one. Thread-safe.
 class BakeJob {
  public:
-    /// `published` is called on the job's thread when status() has news: another bake, the end, and from time
-    /// to time the finished share.
+    struct Status;
+    /// `published` is called on the job's thread with status() when that has news: another bake, the end, and
+    /// from time to time the finished share.
     explicit BakeJob(
-        BakeOrder order, std::function<void()> published = [] {});
+        BakeOrder order, std::function<void(const Status&)> published = [](const Status&) {});
     /// Stops, and waits until what is done is kept.
     ~BakeJob();
     /// Asks it to stop after the present step.
@@ -69,7 +70,7 @@ class BakeJob {
     void note(const Precomputation& work, std::string_view step);
 
     BakeOrder order_;
-    std::function<void()> published_;
+    std::function<void(const Status&)> published_;
     std::atomic<bool> stop_ = false;
     mutable std::mutex mutex_;
     mutable std::condition_variable changed_;

@@ -55,6 +55,13 @@ class Precomputation {
     virtual BakeSections save() const = 0;
 };
 
+/// What a precomputation takes, about.
+struct BakeCost {
+    double cpu_seconds = 0;
+    uint64_t memory_bytes = 0;  ///< while it runs
+    uint64_t file_bytes = 0;
+};
+
 /// How an engine precomputes: a constant in the engine's folder (EngineInfo::precomputes).
 struct Precomputes {
     std::unique_ptr<Precomputation> (*make)() = nullptr;
@@ -62,6 +69,8 @@ struct Precomputes {
     /// What the result depends on, beside the places, areas and normals of the surfels.
     bool colours = false, materials = false, lights = false, environment = false;
     std::span<const OptionInfo* const> options = {};
+    /// Estimates the cost for so many surfels; null: unknown.
+    BakeCost (*cost)(const EngineSettings& settings, uint64_t surfels) = nullptr;
 };
 
 /// Returns a hash of all that the result of an engine's precomputation depends on.

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/bake/bake_file.h"
 #include "gi/registry.h"
 #include "io/core/log.h"
 #include "viewer/commands/commands.h"
@@ -41,8 +42,11 @@ struct ViewOptions {
 Result<StartingView> starting_view(const ViewOptions& options, const octree::NodeSource& source) {
     StartingView start;
     const auto engine = gi::find_engine(prepared_engine());
-    start.is_prepared = engine && is_kept((*engine)->info, source);
-    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, source, start.is_prepared));
+    if (engine) start.prepared_file = kept_bake((*engine)->info, source);
+    if (const auto identity = source.identity())
+        start.prepared_place = gi::bake_place(identity->file, prepared_engine());
+    const bool is_prepared = !start.prepared_file.empty();
+    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, source, is_prepared));
     LUCARNE_ASSIGN(start.camera, find_camera(loaded.scene, options.camera));
     start.fits_window = loaded.first_view && options.camera.empty();
     start.scene = std::move(loaded.scene);

@@ -13,12 +13,12 @@
 
 namespace lucarne::viewer {
 
-bool is_kept(const gi::EngineInfo& engine, const octree::NodeSource& source) {
+std::filesystem::path kept_bake(const gi::EngineInfo& engine, const octree::NodeSource& source) {
     const auto identity = source.identity();
-    if (!engine.precomputes || !identity) return false;
+    if (!engine.precomputes || !identity) return {};
     std::error_code unknown;
     const auto written = std::filesystem::last_write_time(identity->file, unknown);
-    if (unknown) return false;
+    if (unknown) return {};
     for (const auto& place :
          {gi::bake_place(identity->file, engine.name), gi::bake_beside(identity->file, engine.name)}) {
         if (place.empty() || !std::filesystem::exists(place, unknown)) continue;
@@ -27,9 +27,9 @@ bool is_kept(const gi::EngineInfo& engine, const octree::NodeSource& source) {
         const auto header = file ? gi::read_bake_header(**file) : tl::make_unexpected(file.error());
         if (header && header->engine == engine.name && header->version == engine.precomputes->version &&
             header->share >= 1)
-            return true;
+            return place;
     }
-    return false;
+    return {};
 }
 
 EngineBake::Inputs EngineBake::inputs_of(const BakeSubject& subject) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -28,15 +29,17 @@ struct BakeSubject {
     bool is_shown = true;  ///< while it is made; a precomputation that runs already goes on as it does
 };
 
-/// Returns whether a finished precomputation of an engine is kept for a scan that has not been written since.
-/// It may have been made with other options or for other points: then pictures begin it again.
-bool is_kept(const gi::EngineInfo& engine, const octree::NodeSource& source);
+/// Returns the file of an engine's finished precomputation for a scan that has not been written since; empty:
+/// none is kept. It may have been made with other options or for other points: then pictures begin it again.
+std::filesystem::path kept_bake(const gi::EngineInfo& engine, const octree::NodeSource& source);
 
 /// Runs the precomputation of the engine that draws pictures, and starts it again when an input changes.
 class EngineBake {
  public:
     /// `published` is called on another thread when there is news.
-    void on_news(std::function<void()> published) { published_ = std::move(published); }
+    void on_news(std::function<void(const gi::BakeJob::Status&)> published) {
+        published_ = std::move(published);
+    }
     /// Starts what the engine precomputes, unless that runs or is done. An engine that precomputes nothing
     /// ends what runs.
     void update(const BakeSubject& subject);
@@ -44,6 +47,8 @@ class EngineBake {
     Result<void> wait(const std::atomic<bool>* stop, Progress* progress) const;
 
     bool running() const { return job_ != nullptr; }
+    /// The engine that it is made for; null: nothing is made.
+    const gi::EngineInfo* engine() const { return job_ ? inputs_.engine : nullptr; }
     gi::BakeJob::Status status() const { return job_ ? job_->status() : gi::BakeJob::Status{}; }
     /// Meaning of the coordinates of its surfels.
     const gi::LocalFrame& frame() const { return frame_; }
@@ -65,7 +70,7 @@ class EngineBake {
     };
     static Inputs inputs_of(const BakeSubject& subject);
 
-    std::function<void()> published_ = [] {};
+    std::function<void(const gi::BakeJob::Status&)> published_ = [](const gi::BakeJob::Status&) {};
     Inputs inputs_;
     gi::LocalFrame frame_;
     std::unique_ptr<gi::BakeJob> job_;

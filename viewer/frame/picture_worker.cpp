@@ -36,7 +36,8 @@ struct PictureWorker::State {
     std::optional<WorkerDevice> next_device;
     gi::DeviceInfo device;
     bool stop = false;
-    bool prepared = false;              ///< the engine's precomputation has news
+    bool prepared = false;  ///< the engine's precomputation has news for another picture
+    Preparing preparing;
     std::atomic<bool> give_up = false;  ///< the picture that is being made
     bool may_give_up = false;           ///< whether it may be, for one of a motion
     std::function<void()> published;
@@ -174,12 +175,16 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
     } else {
         told = {};
         LUCARNE_ASSIGN(pipeline, Pipeline::open(gl, other, options));
-        pipeline->on_prepared([this] {
+        pipeline->on_prepared([this, version = uint64_t{0}](const gi::BakeJob::Status& status) mutable {
+            const bool worth_a_picture = status.ended || status.version != version;
+            version = status.version;
             {
                 const std::lock_guard lock(mutex);
-                prepared = true;
+                preparing = {status.share, status.step};
+                prepared |= worth_a_picture;
             }
             changed.notify_all();
+            published();
         });
     }
     shown = std::move(other);
@@ -350,6 +355,11 @@ std::shared_ptr<const Picture> PictureWorker::latest() const {
 Result<void> PictureWorker::error() const {
     const std::lock_guard lock(state_->mutex);
     return state_->error;
+}
+
+Preparing PictureWorker::preparing() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->preparing;
 }
 
 const gi::DeviceInfo& PictureWorker::device() const {

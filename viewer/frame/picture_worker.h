@@ -31,8 +31,8 @@ struct PictureRequest {
     /// What makes another picture of it, for comparisons. `scene_version` stands for the scene.
     auto content() const {
         return std::tie(frame.camera, frame.size, frame.most_pixels, frame.front_only, frame.accumulate,
-                        frame.stand_in, frame.colours_only, method, scene_version, shader_version, moving,
-                        sketch);
+                        frame.stand_in, frame.prepares, frame.colours_only, method, scene_version,
+                        shader_version, moving, sketch);
     }
 };
 
@@ -69,14 +69,20 @@ struct WorkerDevice {
     std::function<void()> release;
 };
 
+/// How far a precomputation is.
+struct Preparing {
+    double share = 0;  ///< the finished share, 0..1
+    std::string step;  ///< that is being taken; empty at the end
+};
+
 /// A thread that owns a device and a pipeline and makes pictures of the newest request, so that the window
 /// responds at once however long a picture takes. It repeats the same request while nodes are on their way or
 /// pictures are being averaged, and then sleeps.
 class PictureWorker {
  public:
-    /// Starts the worker. `published` is called on the worker's thread after each picture, each error and
-    /// each loss of the device. `source` may be null; then no pictures are made until set_source(). Errors:
-    /// no device.
+    /// Starts the worker. `published` is called after each picture, each error and each loss of the
+    /// device, and when preparing() has changed; also on another thread. `source` may be null; then no
+    /// pictures are made until set_source(). Errors: no device.
     static Result<std::unique_ptr<PictureWorker>> start(WorkerDevice device,
                                                         std::shared_ptr<const octree::NodeSource> source,
                                                         const PipelineOptions& options,
@@ -94,6 +100,9 @@ class PictureWorker {
     std::shared_ptr<const Picture> latest() const;  ///< null before the first picture, and without a source
     /// Returns the error if making the newest request's picture failed. It is not tried again.
     Result<void> error() const;
+    /// Returns how far a precomputation is; the last one's once it has ended. It is newer than that of the
+    /// last picture, since other shares alone are no reason for another one.
+    Preparing preparing() const;
     /// Returns why the device was lost, while the worker waits for a new one. Device and pipeline have been
     /// destroyed by then; the source, the request and the last picture stay.
     std::optional<Error> lost_device() const;

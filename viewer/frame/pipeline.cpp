@@ -39,6 +39,8 @@ constexpr double kLeastLoadingTime = 0.002, kLoadingShare = 0.1;
 /// Time for which the first picture of all waits for its nodes, s: a few of them make no picture.
 constexpr double kFirstPatience = 0.1;
 
+constexpr double kAlmost = 0.999;  // the share of what is finished, but not yet kept
+
 /// Returns how points are shown without light. Colours that stand for values are shown as they are.
 gi::Unlit unlit_of(const gi::Look& look) {
     gi::Unlit unlit = look.unlit;
@@ -70,7 +72,7 @@ struct Pipeline::State {
     Result<void> take_source(std::shared_ptr<const octree::NodeSource> from);
     gi::EngineNeeds needs(const FrameRequest& request) const;
     void choose_cuts(const FrameRequest& request);
-    void update_bake(bool is_shown);
+    Result<void> update_bake(bool is_shown, std::string_view prepares);
     Result<void> take_bake(const FrameRequest& request);
     void look_ahead(const FrameRequest& request);
     Result<void> stream(const FrameRequest& request);
@@ -162,26 +164,34 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
     cuts.changed();
 }
 
-void Pipeline::State::update_bake(bool is_shown) {
-    bake.update({engine->info(), source, bounds, surfels, scene, settings, budgets.light, is_shown});
+/// `prepares`: as FrameRequest::prepares.
+Result<void> Pipeline::State::update_bake(bool is_shown, std::string_view prepares) {
+    const gi::EngineInfo* prepared = &engine->info();
+    if (!prepared->precomputes && !prepares.empty()) {
+        LUCARNE_ASSIGN(const auto entry, gi::find_engine(prepares));
+        prepared = &entry->info;
+    }
+    bake.update({*prepared, source, bounds, surfels, scene, settings, budgets.light, is_shown});
+    return {};
 }
 
 /// Takes what the engine has computed in advance so far; with `wait` all of it. Without `wait` a failure is a
 /// warning, and the engine draws without it. So is one to keep it.
 Result<void> Pipeline::State::take_bake(const FrameRequest& request) {
-    update_bake(!request.wait);
+    LUCARNE_TRY(update_bake(!request.wait, request.prepares));
     if (!bake.running()) {
         baked = {};
         return {};
     }
-    if (request.wait) LUCARNE_TRY(bake.wait(request.stop, nullptr));
+    const bool is_drawn = engine->info().precomputes != nullptr;
+    if (request.wait && is_drawn) LUCARNE_TRY(bake.wait(request.stop, nullptr));
     const bool failed_before = baked.ended && !baked.error, unkept_before = !baked.keeping;
     baked = bake.status();
     if (baked.ended && !baked.error && !failed_before)
         log::warn("{}; the picture is made without it", baked.error.error().line());
     if (!baked.keeping && !unkept_before)
         log::warn("{}; it will be computed again", baked.keeping.error().line());
-    if (std::exchange(bake_version, baked.version) != baked.version) presentation.restart();
+    if (std::exchange(bake_version, baked.version) != baked.version && is_drawn) presentation.restart();
     return {};
 }
 
@@ -312,7 +322,7 @@ Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& requ
                     .content = content,
                     .light_budget = keeps_light && request.light_budget.whole() ? gi::StepBudget::paused()
                                                                                 : request.light_budget,
-                    .bake = &by == engine.get() ? baked.bake.get() : nullptr,
+                    .bake = &by == engine.get() && by.info().precomputes ? baked.bake.get() : nullptr,
                     .bake_offset = glm::vec3((bake.frame().origin - local.origin) * local.metres_per_unit),
                     .stop = request.stop,
                     .progress = request.progress,
@@ -359,9 +369,14 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.ready_points = cuts.ready_points();  // clipped nodes count as drawn
     result.bytes_loaded = surfels.bytes_loaded();
     const octree::ResidencyStats streamed = surfels.stats();
-    if (bake.running()) result.prepared = baked.share;
+    if (const gi::EngineInfo* prepared = bake.engine()) {
+        result.prepared = baked.ended ? baked.share : std::min(baked.share, kAlmost);
+        result.prepared_for = prepared->name;
+    }
     result.preparing = baked.step;
+    result.prepared_file = baked.file;
     if (!baked.error) result.not_prepared = baked.error.error().line();
+    if (!baked.keeping) result.not_kept = baked.keeping.error().line();
     result.nodes_pending = streamed.pending;
     result.nodes_lost = streamed.lost;
     result.lost_node = lost_node;
@@ -469,7 +484,7 @@ Result<void> Pipeline::set_engine(std::string_view name) {
     return {};
 }
 
-void Pipeline::on_prepared(std::function<void()> published) {
+void Pipeline::on_prepared(std::function<void(const gi::BakeJob::Status&)> published) {
     state_->bake.on_news(std::move(published));
 }
 
@@ -477,7 +492,7 @@ Result<std::filesystem::path> Pipeline::prepare(Progress* progress) {
     State& state = *state_;
     if (!state.engine) LUCARNE_TRY(set_engine(gi::default_engine().name));
     LUCARNE_TRY(state.surfels.renew(state.scene));
-    state.update_bake(false);
+    LUCARNE_TRY(state.update_bake(false, {}));
     LUCARNE_TRY(state.bake.wait(nullptr, progress));
     const gi::BakeJob::Status done = state.bake.status();
     LUCARNE_TRY(done.keeping);

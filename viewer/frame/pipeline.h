@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "gi/bake/bake_job.h"
 #include "gi/device/gl/device.h"
 #include "gi/device/gl/pass_times.h"
 #include "gi/engine.h"
@@ -64,6 +65,9 @@ struct FrameRequest {
     /// Likewise, as long as nodes are on their way, and for an engine that computes in advance until it has
     /// anything to show.
     bool stand_in_early = false;
+    /// An engine whose precomputation runs whatever engine draws; empty: only that of the one that draws, if
+    /// it has one.
+    std::string prepares;
     bool colours_only = false;  ///< shows the points' colours without light: the fastest picture
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
     Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
@@ -82,12 +86,16 @@ struct FrameStats {
     MemoryUse memory;
     uint32_t accumulated = 1;  ///< frames in the picture
     bool given_up = false;     ///< FrameRequest::stop: there is no new picture
-    /// The finished share of what the engine computes in advance, 0..1; none if it computes nothing.
+    /// The finished share of what is computed in advance, 0..1 (1: it is also kept, or cannot be); none if
+    /// nothing is.
     std::optional<double> prepared;
-    std::string preparing;     ///< the name of the step of it that is being taken; empty: none
-    std::string not_prepared;  ///< why it failed
-    uint64_t nodes_lost = 0;   ///< unreadable nodes, which are left out with their descendants
-    std::string lost_node;     ///< why the first of these could not be read
+    std::string prepared_for;             ///< for which engine; empty: none
+    std::filesystem::path prepared_file;  ///< that holds it; empty: none does
+    std::string preparing;                ///< the name of the step of it that is being taken; empty: none
+    std::string not_prepared;             ///< why it failed
+    std::string not_kept;                 ///< why no file holds it
+    uint64_t nodes_lost = 0;              ///< unreadable nodes, which are left out with their descendants
+    std::string lost_node;                ///< why the first of these could not be read
     std::vector<std::pair<std::string, double>> engine;
     std::string lit_by;         ///< the name of the engine that drew the picture
     std::string compared_with;  ///< and of the one that it is compared with; empty: none has drawn
@@ -131,9 +139,9 @@ class Pipeline {
     /// is unknown.
     Result<void> set_scene(gi::Scene scene);
 
-    /// Sets a function that is called on another thread when the engine's precomputation has news, so that
-    /// another picture is worth making. Call before the first render().
-    void on_prepared(std::function<void()> published);
+    /// Sets a function that is called on another thread when the engine's precomputation has news. Another
+    /// picture is worth making if it has another bake or has ended. Call before the first render().
+    void on_prepared(std::function<void(const gi::BakeJob::Status&)> published);
     /// Computes in advance all that the engine asks for with the present settings and scene, as render() with
     /// `wait` does, and keeps it. Returns the file; empty if there is no place for it. `progress` counts
     /// thousandths. Errors: it fails; it cannot be kept. An engine that computes nothing in advance is done

@@ -10,6 +10,7 @@
 #include "gi/registry.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
+#include "viewer/light/preparing.h"
 #include "viewer/opening/moods.h"
 
 namespace lucarne::viewer {
@@ -41,6 +42,9 @@ bool has_site(const Lighting& model) {
 bool is_on(const Lighting& model) {
     return has_light(model) && model.lights.selected < model.view.scene.lights.size() &&
            model.view.scene.lights[model.lights.selected].on;
+}
+bool can_prepare(const Lighting& model) {
+    return why_not_prepared(model).empty();
 }
 void toggle_handles(const Lighting& model) {
     model.lights.show_handles = !model.lights.show_handles;
@@ -96,9 +100,15 @@ std::span<const Action<const Lighting>> light_actions() {
         Entry{{GLFW_KEY_6, GLFW_MOD_SHIFT}, "Light/Mood", "Clay", light_as<Mood::clay>, has_site},
         Entry{{GLFW_KEY_D, GLFW_MOD_ALT}, "Light", "Duplicate", duplicate_light, has_light},
         Entry{{GLFW_KEY_DELETE, GLFW_MOD_ALT}, "Light", "Delete", remove_light, has_light},
+        Entry{{GLFW_KEY_R, GLFW_MOD_ALT}, "Light", "Prepare light in advance", prepare, can_prepare},
+        Entry{{GLFW_KEY_R, kAltShift}, "Light", "Stop preparing", stop_preparing, is_preparing},
         Entry{{GLFW_KEY_H, GLFW_MOD_ALT}, "Light", "Handles", toggle_handles, nullptr, shows_handles},
     };
     return kActions;
+}
+
+bool shows_rooms(const View& view) {
+    return site_about(view).kind == SiteKind::interior;
 }
 
 std::string_view engine_here(const View& view, Mood mood) {

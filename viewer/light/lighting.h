@@ -31,6 +31,8 @@ void draw_sky(const Lighting& model);
 void draw_emitters(const Lighting& model);
 /// Lights the open scans in a mood, with the engine that shows it.
 void take_mood(const Lighting& model, Mood mood);
+/// Whether the scan shows rooms where the camera is: also in a house that was entered.
+bool shows_rooms(const View& view);
 /// Returns the engine that shows a mood where the camera is: in a house that was entered that of rooms.
 std::string_view engine_here(const View& view, Mood mood);
 /// Makes the light of the mood anew for where the camera is now: lamps in a house that was entered, which the

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,11 +26,25 @@ struct LoadSky {
     std::string file;
 };
 
+/// Light paths in advance (prepared_engine()): what the window knows of them beside View::is_prepared.
+struct Preparation {
+    uint64_t points = 0;                ///< of the open scans
+    bool grows = false;                 ///< more of them are to come
+    bool wanted = false;                ///< the user has asked for it, and it has not ended
+    std::string engine_before;          ///< that drew pictures then
+    std::filesystem::path place, file;  ///< where it would be kept; where it is kept; empty: nowhere
+    uint64_t file_bytes = 0;
+    std::string problem;                          ///< why it has failed, or is not kept
+    std::chrono::steady_clock::time_point begun;  ///< when the first picture told of it
+    double share_at_begin = 0;
+};
+
 /// What the window remembers for lights in addition to the scene.
 struct LightModel {
     std::optional<Mood> mood;  ///< the mood that the lights are of; none once one of them was changed
     size_t selected = 0;       ///< index of the selected light
     bool show_handles = true;
+    Preparation preparation;
     bool lumens = false;  ///< show strengths in lm and lx
     std::optional<LightHandle> held;
     std::string sky_image;  ///< path of the sky picture, as typed

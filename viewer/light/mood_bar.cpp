@@ -8,6 +8,7 @@
 
 #include "gi/registry.h"
 #include "viewer/light/lighting.h"
+#include "viewer/light/preparing.h"
 #include "viewer/opening/moods.h"
 #include "viewer/ui/on_screen.h"
 
@@ -56,9 +57,10 @@ void draw_mood_bar(const Lighting& model) {
     if (model.view.site.outline.empty()) return;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const auto left = static_cast<float>(model.view.side_bar.pixels(ImGui::GetFontSize(), size.x));
-    const float width = width_of(moods());
+    const float width = width_of(moods()) + preparing_button_width(model);
     if (size.x - left < 1.2f * width) return;  // it would hide the picture; the menu has them as well
     ImGui::SetNextWindowPos(ImVec2((left + size.x - width) / 2, mood_bar_span().x));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, FLT_MAX));
     ImGui::SetNextWindowBgAlpha(0.45f);
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
@@ -76,6 +78,7 @@ void draw_mood_bar(const Lighting& model) {
                 ImGui::SetTooltip("%s\nEngine: %s", info.help.data(),
                                   gi::label_of(engine_here(model.view, info.mood)).c_str());
         }
+        draw_preparing_bar(model);
         if (lit && model.lights.mood == Mood::daylight) draw_hour(model);
     }
     ImGui::End();

@@ -8,6 +8,7 @@
 #include "gi/shared/surfel_code.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
+#include "viewer/light/preparing.h"
 #include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
@@ -180,6 +181,7 @@ void draw_light_panel(const Lighting& model) {
     }
     draw_sky(model);
     draw_emitters(model);
+    draw_preparing(model);
 }
 
 }  // namespace lucarne::viewer

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -63,10 +64,11 @@ std::string scans_title(const std::vector<ScanRow>& rows);
 struct StartingView {
     gi::Scene scene;
     gi::SceneCamera camera;
-    bool fits_window = false;  ///< the camera is the site's first view, to be fitted to the window
-    std::optional<Mood> mood;  ///< the light is this mood's
-    std::string engine;        ///< what draws it at first
-    bool is_prepared = false;  ///< what prepared_engine() computes in advance is kept
+    bool fits_window = false;             ///< the camera is the site's first view, to be fitted to the window
+    std::optional<Mood> mood;             ///< the light is this mood's
+    std::string engine;                   ///< what draws it at first
+    std::filesystem::path prepared_file;  ///< holds what prepared_engine() computes in advance; empty: none
+    std::filesystem::path prepared_place;  ///< where it would be kept; empty: nowhere
     Site site;
     std::array<glm::dvec3, 2> box{};  ///< the box to look at, world units
     double metres_per_unit = 1;

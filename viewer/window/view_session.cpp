@@ -15,6 +15,7 @@
 #include "io/files/free_name.h"
 #include "viewer/frame/rgba.h"
 #include "viewer/light/darkness.h"
+#include "viewer/light/preparing.h"
 #include "viewer/opening/first_view.h"
 #include "viewer/opening/moods.h"
 #include "viewer/ui/on_screen.h"
@@ -76,6 +77,7 @@ double ViewSession::seconds_at_rest() const {
 
 void ViewSession::take_picture() {
     if (!scans_.source()) return;  // the last scan was closed; the worker may not know it yet
+    model_.view.preparing = worker_.preparing();
     const auto latest = worker_.latest();
     if (!latest || (model_.view.picture && latest->number == model_.view.picture->number)) return;
     model_.view.picture = latest;
@@ -101,8 +103,8 @@ void ViewSession::take_picture() {
     relit_seen_ |= newest;
     lit_seen_ |= latest->source == scans_.source() && !latest->moving &&
                  !gi::engine_is(latest->stats.lit_by, &gi::EngineInfo::unlit);
-    if (last_source && own_engine && latest->stats.lit_by == prepared_engine() && latest->stats.prepared == 1)
-        model_.view.is_prepared = true;
+    if (last_source && !latest->stats.prepared_for.empty())
+        model_.history.without_step(model_, [&] { follow_preparing(model_.lighting()); });
     if (whole) help_in_the_dark(*latest);
 }
 
@@ -172,7 +174,10 @@ void ViewSession::take_extent() {
     model_.view.scene_size = start->scene_size();
     model_.view.box = start->box;
     model_.view.site = start->site;
-    if (first || others) model_.view.is_prepared = start->is_prepared;
+    if (first || others)
+        begin_preparation(model_.lighting(), {.points = scans_.source()->header().points,
+                                              .place = start->prepared_place,
+                                              .file = start->prepared_file});
     model_.view.rig.set_clearance(model_.view.scene_size);
     if (first) model_.view.navigation.set_scene(start->scene_size(), start->metres_per_unit);
     if (!first && model_.view.scene_version != own_scene_) return;
@@ -308,6 +313,7 @@ void ViewSession::follow_scans() {
                   model_.view.picture->stats.view_points);
     if (placed_ && scans_.rows().empty()) project_.close();
     if (seen || (!scans_.source() && scans_.settled())) scans_.convert_next();
+    model_.lights.preparation.grows = std::ranges::any_of(scans_.rows(), is_sketch);
     window_.set_title("Lucarne - " + scans_title(scans_.rows()));
 }
 
@@ -399,7 +405,8 @@ void ViewSession::take_input() {
 
 void ViewSession::draw_panels() {
     draw_overlay(model_.styling());
-    if (!std::ranges::any_of(scans_.rows(), grows)) draw_convergence(model_.view);
+    if (!std::ranges::any_of(scans_.rows(), grows) && !is_preparing(model_.lighting()))
+        draw_convergence(model_.view);
     follow_bookmarks();  // after the keys, so that a bookmark set in the last frame is saved
     draw_menu_bar(model_, actions_);
     if (scans_.rows().empty()) draw_start_page(model_);
@@ -446,9 +453,9 @@ void ViewSession::send_request() {
     request.frame.camera = model_.view.rig.camera();
     request.frame.front_only = looks_in_from_outside(model_.view.site, request.frame.camera);
     request.frame.size = scaled_size(window_.framebuffer(), model_.view.resolution_scale);
-    // Averages and slow light of a sketch would take the processors from the conversion that replaces it.
+    // Averages and slow light would take the processors from what replaces them.
     const bool sketch = std::ranges::any_of(scans_.rows(), grows);
-    request.frame.accumulate = !request.moving && !sketch;
+    request.frame.accumulate = !request.moving && !sketch && !is_preparing(model_.lighting());
     if (shot_) request.pictures = shot_->pictures;
     relit_ = relit_ && !request.moving;
     request.frame.complete = relit_;
@@ -463,6 +470,7 @@ void ViewSession::send_request() {
     request.frame.colours_only = (!model_.view.picture || (sketch && request.moving && !lit_seen_)) &&
                                  !gi::engine_is(request.method.engine, &gi::EngineInfo::unlit);
     request.frame.stand_in_early = true;
+    request.frame.prepares = engine_to_prepare(model_.lighting());
     if (request.moving) {
         const ImageSize size = quality_.size(request.frame.size);
         request.sketch = rest >= kSharp && !(size == request.frame.size);

@@ -25,6 +25,8 @@ constexpr float kCoarserSpacing = 3;
 constexpr uint32_t kCoarseRays = 64;
 constexpr uint64_t kCoarseEntries = 50'000;
 constexpr double kCoarseShare = 0.05;
+/// The share of the rays between gathering points in the work on paths.
+constexpr double kHiddenShare = 0.03;
 
 Spacing spacing_of(const BakeInput& input, std::span<const Surfel> surfels) {
     const float diagonal = glm::distance(input.cut.bounds.min, input.cut.bounds.max);
@@ -42,7 +44,8 @@ class PathsPrecomputation final : public Precomputation {
     Result<void> restore(const BakeInput& input, const BakeSections& sections) override {
         if (sections.contains("rays")) {
             LUCARNE_ASSIGN(LightPaths paths, read_paths(sections, input.settings[kGatherRays]));
-            LUCARNE_TRY(publish(input, std::move(paths)));
+            LUCARNE_TRY(make_bake(input, std::move(paths)));
+            publish();
             finished_ = true;
             return {};
         }
@@ -50,9 +53,8 @@ class PathsPrecomputation final : public Precomputation {
         return {};
     }
 
-    std::vector<Step<const BakeInput>> steps(const BakeInput& from) override {
+    std::vector<Step<const BakeInput>> steps(const BakeInput&) override {
         std::vector<Step<const BakeInput>> steps;
-        const bool is_coarse_first = !restored_ && from.is_shown;
         steps.push_back({"surfels", [this](const BakeInput& input) -> Result<StepResult> {
                              LUCARNE_TRY(start(input));
                              return StepResult::done;
@@ -60,25 +62,20 @@ class PathsPrecomputation final : public Precomputation {
         steps.push_back({"parts of discs", [this](const BakeInput&) -> Result<StepResult> {
                              return surfaces_->find_parts() ? StepResult::again : StepResult::done;
                          }});
-        steps.push_back(
-            {"first points", [this, is_coarse_first](const BakeInput& input) -> Result<StepResult> {
-                 if (is_coarse_first)
-                     start_coarse(input);
-                 else
-                     start_whole(input);
-                 return StepResult::done;
-             }});
-        if (is_coarse_first) {
-            add_steps(steps);
-            steps.push_back({"snapshot", [this](const BakeInput& input) -> Result<StepResult> {
-                                 LUCARNE_TRY(publish(input, builder_->take()));
-                                 start_whole(input);
-                                 return StepResult::done;
-                             }});
-        }
-        add_steps(steps);
-        steps.push_back({"snapshot", [this](const BakeInput& input) -> Result<StepResult> {
-                             LUCARNE_TRY(publish(input, builder_->take()));
+        steps.push_back({"first points", [this](const BakeInput& input) -> Result<StepResult> {
+                             begin_paths(input);
+                             return StepResult::done;
+                         }});
+        add_steps(steps, true);
+        steps.push_back({"coarse paths", [this](const BakeInput& input) -> Result<StepResult> {
+                             if (!is_coarse_) return StepResult::skipped;
+                             publish();
+                             begin_whole(input);
+                             return StepResult::done;
+                         }});
+        add_steps(steps, false);
+        steps.push_back({"paths", [this](const BakeInput&) -> Result<StepResult> {
+                             publish();
                              finished_ = true;
                              builder_.reset();
                              surfaces_.reset();
@@ -90,31 +87,41 @@ class PathsPrecomputation final : public Precomputation {
     double share() const override {
         if (finished_) return 1;
         if (!builder_) return 0;
-        const double share = is_whole_ ? kCoarseShare + (1 - kCoarseShare) * builder_->share()
-                                       : kCoarseShare * builder_->share();
+        const double paths =
+            (1 - kHiddenShare) * builder_->share() + kHiddenShare * (hidden_ ? hidden_->share() : 0);
+        const double share = is_coarse_ ? kCoarseShare * paths : kCoarseShare + (1 - kCoarseShare) * paths;
         return std::min(share, 0.999);
     }
     std::shared_ptr<const Bake> snapshot() const override { return bake_; }
     BakeSections save() const override {
         if (finished_) return write_paths(bake_->paths);
         // Coarse paths are soon made again.
-        if (is_whole_) return write_points(builder_->points());
+        if (!is_coarse_) return write_points(builder_->points());
         return write_points({.spacing = spacing_, .parts = surfaces_->parts_key()});
     }
 
  private:
-    void add_steps(std::vector<Step<const BakeInput>>& steps) {
-        const auto add = [&](std::string_view name, const std::function<bool(PathBuilder&)>& step) {
-            steps.push_back({name, [this, step](const BakeInput&) -> Result<StepResult> {
-                                 return step(*builder_) ? StepResult::again : StepResult::done;
+    /// Adds the steps to coarse paths, which are skipped if there are to be none, or to all paths.
+    void add_steps(std::vector<Step<const BakeInput>>& steps, bool coarse) {
+        const auto add = [&](std::string_view name, const std::function<bool()>& step) {
+            steps.push_back({name, [this, step, coarse](const BakeInput&) -> Result<StepResult> {
+                                 if (coarse && !is_coarse_) return StepResult::skipped;
+                                 return step() ? StepResult::again : StepResult::done;
                              }});
         };
-        add("gathering points", &PathBuilder::choose_points);
-        add("groups", [](PathBuilder& b) { return b.make_groups(), false; });
-        add("larger groups", [](PathBuilder& b) { return b.join_groups(), false; });
-        add("links", &PathBuilder::make_links);
-        add("entry points", [](PathBuilder& b) { return b.make_entries(), false; });
-        add("photon paths", &PathBuilder::make_photons);
+        add("gathering points", [this] { return builder_->choose_points(); });
+        add("groups", [this] { return builder_->make_groups(), false; });
+        add("larger groups", [this] { return builder_->join_groups(), false; });
+        add("links", [this] { return builder_->make_links(); });
+        add("entry points", [this] { return builder_->make_entries(), false; });
+        add("photon paths", [this] { return builder_->make_photons(); });
+        steps.push_back({"neighbours", [this, coarse](const BakeInput& input) -> Result<StepResult> {
+                             if (coarse && !is_coarse_) return StepResult::skipped;
+                             LUCARNE_TRY(make_bake(input, builder_->take()));
+                             hidden_.emplace(*next_, about_, surfaces_->tracer());
+                             return StepResult::done;
+                         }});
+        add("hidden neighbours", [this] { return hidden_->advance(); });
     }
     Result<void> start(const BakeInput& input) {
         LUCARNE_ASSIGN(auto tracer, tracing::SurfelTracer::create(input.cut.surfels));
@@ -122,26 +129,34 @@ class PathsPrecomputation final : public Precomputation {
         spacing_ = spacing_of(input, surfaces_->tracer().surfels());
         return {};
     }
-    void start_coarse(const BakeInput& input) {
+    /// Continues with the gathering points that were kept, or begins with coarse paths if anything shows
+    /// them.
+    void begin_paths(const BakeInput& input) {
+        auto kept = std::exchange(restored_, std::nullopt);
+        if (kept && kept->next > 0) {
+            begin_whole(input);
+            if (builder_->restore(std::move(*kept))) return;
+            // A processor with other vector units may have found other parts.
+            log::info("paths: kept points are of other parts of discs, or damaged; they are chosen again");
+        }
+        input.is_shown ? begin_coarse(input) : begin_whole(input);
+    }
+    void begin_coarse(const BakeInput& input) {
+        is_coarse_ = true;
         builder_.emplace(*surfaces_,
                          PathPlan{{kCoarserSpacing * spacing_.least, kCoarserSpacing * spacing_.most},
                                   kCoarseRays,
                                   kCoarseEntries,
                                   input.settings[kSeed]});
     }
-    void start_whole(const BakeInput& input) {
-        is_whole_ = true;
+    void begin_whole(const BakeInput& input) {
+        is_coarse_ = false;
         builder_.emplace(*surfaces_, PathPlan{spacing_, input.settings[kGatherRays],
                                               input.settings[kEntryPoints], input.settings[kSeed]});
-        if (!restored_) return;
-        // A processor with other vector units may have found other parts.
-        if (!builder_->restore(std::move(*restored_)))
-            log::info("paths: kept points are of other parts of discs, or damaged; they are chosen again");
-        restored_.reset();
     }
-    /// Makes the snapshot: reads what entry points reflect from the surfels, so that colours and materials
-    /// may change without any ray.
-    Result<void> publish(const BakeInput& input, LightPaths paths) {
+    /// Makes the next snapshot up to what points share: reads what entry points reflect from the surfels, so
+    /// that colours and materials may change without any ray.
+    Result<void> make_bake(const BakeInput& input, LightPaths paths) {
         std::vector<uint32_t> discs;
         for (uint32_t i = 0; i < input.cut.surfels.size(); ++i)
             if (tracing::has_disc(input.cut.surfels[i])) discs.push_back(i);
@@ -159,20 +174,41 @@ class PathsPrecomputation final : public Precomputation {
         bake->far = PointCells(paths.points, kFarReach);
         bake->paths = std::move(paths);
         bake->seed = input.settings[kSeed];
-        const Sharing about = find_sharing(*bake);
-        if (surfaces_) bake->paths.hidden = find_hidden(*bake, about, surfaces_->tracer());
-        bake->sharing = without(about, bake->paths.hidden);
-        bake_ = std::move(bake);
+        about_ = find_sharing(*bake);
+        next_ = std::move(bake);
         return {};
+    }
+    /// Publishes the next snapshot: points share light with those they see.
+    void publish() {
+        if (hidden_) next_->paths.hidden = hidden_->take();
+        hidden_.reset();
+        next_->sharing = without(std::exchange(about_, {}), next_->paths.hidden);
+        bake_ = std::exchange(next_, nullptr);
     }
 
     std::unique_ptr<Surfaces> surfaces_;
     Spacing spacing_;  ///< asked for
     std::optional<PathBuilder> builder_;
     std::optional<PointChooser::State> restored_;  ///< what was kept of unfinished work
-    bool is_whole_ = false, finished_ = false;
+    bool is_coarse_ = false;                       ///< coarse paths are being made
+    bool finished_ = false;
+    std::shared_ptr<PathsBake> next_;  ///< the next snapshot
+    Sharing about_;                    ///< what its points would share if nothing hid them from each other
+    std::optional<HiddenFinder> hidden_;
     std::shared_ptr<const PathsBake> bake_;
 };
+
+/// About what MEASURED.md says of even scans at the default options: a ray of a gathering point costs more
+/// than its share of a surfel's other work from about 400 rays on.
+BakeCost cost_of(const EngineSettings& settings, uint64_t surfels) {
+    constexpr double kSeconds = 45e-6, kSecondsARay = .12e-6;  // a surfel
+    constexpr double kMemory = 500, kMemoryARay = 1;           // bytes
+    constexpr double kFile = 30, kFileARay = .15;
+    const auto count = static_cast<double>(surfels), rays = static_cast<double>(settings[kGatherRays]);
+    return {.cpu_seconds = count * (kSeconds + kSecondsARay * rays),
+            .memory_bytes = static_cast<uint64_t>(count * (kMemory + kMemoryARay * rays)),
+            .file_bytes = static_cast<uint64_t>(count * (kFile + kFileARay * rays))};
+}
 
 constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info, &kEntryPoints.info,
                                          &kSeed.info};
@@ -182,6 +218,7 @@ constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info,
 const Precomputes kPathsPrecomputes{
     .make = []() -> std::unique_ptr<Precomputation> { return std::make_unique<PathsPrecomputation>(); },
     .version = 6,
-    .options = kOfBake};
+    .options = kOfBake,
+    .cost = &cost_of};
 
 }  // namespace lucarne::gi::paths

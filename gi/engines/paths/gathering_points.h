@@ -80,7 +80,6 @@ class PointChooser {
         uint64_t parts = 0;        ///< Surfaces::parts_key(): hits name sides
     };
     const State& state() const { return state_; }
-    State take() { return std::move(state_); }
     /// Continues from a state of equal arguments. Returns false if it cannot be one.
     bool restore(State state);
     /// Examines some candidates. Returns whether any are left.

@@ -19,6 +19,8 @@ constexpr float kTurn = 0.29403f, kSharingTurn = 0.17235f, kWideTurn = 0.48369f,
 /// Pixels with less weight than this in all take the nearest point.
 constexpr float kLeastSum = 1e-3f;
 constexpr size_t kPlacesAPiece = 256;
+/// Points between two looks at whether to stop: some tens of thousands of rays.
+constexpr size_t kTestedAtOnce = 2048;
 
 }  // namespace
 
@@ -117,26 +119,30 @@ Sharing find_sharing(const PathsBake& bake) {
     });
 }
 
-std::vector<PointPair> find_hidden(const PathsBake& bake, const Sharing& sharing,
-                                   const tracing::SurfelTracer& tracer) {
-    const std::vector<GatheringPoint>& points = bake.paths.points;
+double HiddenFinder::share() const {
+    const size_t points = bake_.paths.points.size();
+    return points == 0 ? 1 : static_cast<double>(next_) / static_cast<double>(points);
+}
+
+bool HiddenFinder::advance() {
+    const std::vector<GatheringPoint>& points = bake_.paths.points;
     const auto above = [&](uint32_t i) {
         return tracing::offset_origin(points[i].position, points[i].normal, points[i].radius);
     };
-    std::vector<std::vector<PointPair>> of_pieces((points.size() + kPlacesAPiece - 1) / kPlacesAPiece);
-    parallel_ranges(of_pieces.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t piece = begin; piece < end; ++piece)
-            for (size_t i = piece * kPlacesAPiece; i < std::min((piece + 1) * kPlacesAPiece, points.size());
-                 ++i)
-                for (const PointShare& share : sharing.of(i)) {
-                    const auto own = static_cast<uint32_t>(i);
-                    if (share.point != own && tracer.occluded(above(own), above(share.point)))
-                        of_pieces[piece].push_back({own, share.point});
-                }
+    const size_t first = next_, last = std::min(points.size(), first + kTestedAtOnce);
+    std::vector<std::vector<PointPair>> of_pieces((last - first + kPlacesAPiece - 1) / kPlacesAPiece);
+    parallel_ranges(last - first, kPlacesAPiece, [&](size_t begin, size_t end) {
+        std::vector<PointPair>& of_piece = of_pieces[begin / kPlacesAPiece];
+        for (size_t i = first + begin; i < first + end; ++i)
+            for (const PointShare& share : sharing_.of(i)) {
+                const auto own = static_cast<uint32_t>(i);
+                if (share.point != own && tracer_.occluded(above(own), above(share.point)))
+                    of_piece.push_back({own, share.point});
+            }
     });
-    std::vector<PointPair> hidden;
-    for (const auto& piece : of_pieces) hidden.insert(hidden.end(), piece.begin(), piece.end());
-    return hidden;
+    for (const auto& piece : of_pieces) hidden_.insert(hidden_.end(), piece.begin(), piece.end());
+    next_ = last;
+    return next_ < points.size();
 }
 
 Sharing without(const Sharing& sharing, std::span<const PointPair> hidden) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -47,11 +48,27 @@ Sharing find_sharing(const PathsBake& bake, size_t places,
                      const std::function<bool(PointFinder&, size_t)>& find);
 /// Returns which points each gathering point shares its light with: those about it, as pixels do.
 Sharing find_sharing(const PathsBake& bake);
-/// Returns which of these shares belong to points that something hides from each other: by rays, since
-/// walls() of points are coarse.
-std::vector<PointPair> find_hidden(const PathsBake& bake, const Sharing& sharing,
-                                   const tracing::SurfelTracer& tracer);
-/// Leaves out shares of hidden points. `hidden`: of find_hidden(), in its order.
+/// Finds which shares belong to points that something hides from each other: by rays, since walls() of points
+/// are coarse.
+class HiddenFinder {
+ public:
+    /// The references must outlive it.
+    HiddenFinder(const PathsBake& bake, const Sharing& sharing, const tracing::SurfelTracer& tracer)
+        : bake_(bake), sharing_(sharing), tracer_(tracer) {}
+    /// Tests the shares of some more points. Returns whether any are left.
+    bool advance();
+    /// The finished share, 0..1.
+    double share() const;
+    std::vector<PointPair> take() { return std::move(hidden_); }
+
+ private:
+    const PathsBake& bake_;
+    const Sharing& sharing_;
+    const tracing::SurfelTracer& tracer_;
+    size_t next_ = 0;
+    std::vector<PointPair> hidden_;
+};
+/// Leaves out shares of hidden points. `hidden`: of HiddenFinder, in its order.
 Sharing without(const Sharing& sharing, std::span<const PointPair> hidden);
 
 /// Lets gathering points share their light: it takes the blotches of their few rays away.

@@ -56,7 +56,7 @@ bool PathBuilder::make_photons() {
 }
 
 LightPaths PathBuilder::take() {
-    paths_.points = chooser_.take().points;
+    paths_.points = chooser_.state().points;  // the state may still have to be kept
     paths_.groups.leaf_of.clear();
     return std::move(paths_);
 }

@@ -188,22 +188,41 @@ TEST_F(PipelineTest, TheStandInDrawsUntilSomethingIsComputedInAdvance) {
     EXPECT_TRUE(stats.prepared);
 }
 
+TEST_F(PipelineTest, PreparesForOneEngineWhileAnotherDraws) {
+    request_.wait = false;
+    request_.stand_in_early = request_.complete = true;
+    request_.prepares = "paths";
+    FrameStats stats = frame("direct");
+    while (stats.prepared < 1) {
+        EXPECT_EQ(stats.lit_by, "direct");
+        EXPECT_EQ(stats.prepared_for, "paths");
+        stats = frame("direct");
+    }
+    EXPECT_EQ(stats.not_kept, "");
+    EXPECT_EQ(stats.prepared_file, kept_bake((*gi::find_engine("paths"))->info, *source_));
+    stats = frame("paths");
+    EXPECT_EQ(stats.lit_by, "paths") << "it is there at once";
+    EXPECT_EQ(stats.prepared, 1);
+    request_.prepares.clear();
+    EXPECT_EQ(frame("direct").prepared_for, "");
+}
+
 TEST_F(PipelineTest, KeptPreparationsAreFoundUnlessTheScanIsNewer) {
     const gi::EngineInfo& paths = (*gi::find_engine("paths"))->info;
-    EXPECT_FALSE(is_kept(paths, *source_));
-    EXPECT_FALSE(is_kept((*gi::find_engine("vpl"))->info, *source_));
+    EXPECT_TRUE(kept_bake(paths, *source_).empty());
+    EXPECT_TRUE(kept_bake((*gi::find_engine("vpl"))->info, *source_).empty());
     ASSERT_TRUE(pipeline_->set_engine("paths"));
     const auto file = pipeline_->prepare();
     ASSERT_TRUE(file) << file.error().line();
-    EXPECT_TRUE(is_kept(paths, *source_));
+    EXPECT_EQ(kept_bake(paths, *source_), *file);
     const auto cache = source_->identity()->file;
     const auto kept_at = std::filesystem::last_write_time(*file);
     std::filesystem::last_write_time(cache, kept_at + std::chrono::hours(1));
-    EXPECT_FALSE(is_kept(paths, *source_)) << "the scan was converted again";
+    EXPECT_TRUE(kept_bake(paths, *source_).empty()) << "the scan was converted again";
     std::filesystem::last_write_time(cache, kept_at);
-    EXPECT_TRUE(is_kept(paths, *source_));
+    EXPECT_EQ(kept_bake(paths, *source_), *file);
     std::ofstream(*file) << "damaged";
-    EXPECT_FALSE(is_kept(paths, *source_));
+    EXPECT_TRUE(kept_bake(paths, *source_).empty());
 }
 
 TEST_F(PipelineTest, TheStandInDrawsUntilAllNodesAreThere) {

@@ -1,11 +1,14 @@
 #include "viewer/window/actions/actions.h"
 
+#include <fstream>
+
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <imgui.h>
 
 #include "tests/viewer/program.h"
+#include "viewer/light/preparing.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -115,6 +118,121 @@ TEST(Actions, MoodsOfPreparedRoomsAreShownByTheirLightPaths) {
     model.view.method.engine = "micro";
     run_actions(actions, std::array{daylight});
     EXPECT_EQ(model.view.method.engine, "micro") << "the chosen engine stays";
+}
+
+class Preparing : public testing::Test {
+ protected:
+    Preparing() {
+        model_.view.site.kind = SiteKind::interior;
+        model_.view.site.outline = {glm::dvec3(0), glm::dvec3(1)};
+        model_.view.method.engine = "vpl";
+        model_.view.preset = "interactive";
+        model_.lights.mood = Mood::evening;
+        model_.lights.preparation.points = 1'000'000;
+        tell({});
+    }
+    /// Shows a picture with these figures.
+    void tell(const FrameStats& stats) {
+        auto picture = std::make_shared<Picture>();
+        picture->stats = stats;
+        model_.view.preparing.share = stats.prepared.value_or(0);
+        model_.view.picture = picture;
+        follow_preparing(lighting());
+    }
+    void run(const std::string& name) {
+        for (const BoundAction& action : bound_actions(model_))
+            if (action.name == name && action.enabled()) action.run();
+    }
+    Lighting lighting() { return model_.lighting(); }
+    std::string why_not() { return why_not_prepared(lighting()); }
+    std::string& engine() { return model_.view.method.engine; }
+    static FrameStats at(double share) {
+        FrameStats stats;
+        stats.prepared = share;
+        stats.prepared_for = prepared_engine();
+        return stats;
+    }
+    const std::string begin_ = "Prepare light in advance", stop_ = "Stop preparing";
+    ViewModel model_{10};
+};
+
+TEST_F(Preparing, SaysBeforeWhatItCostsAndWhyItCannotRun) {
+    EXPECT_EQ(why_not(), "");
+    EXPECT_THAT(preparing_cost(lighting()), testing::MatchesRegex("Takes about .* s on .* of memory .*"));
+    model_.lights.preparation.grows = true;
+    EXPECT_THAT(why_not(), testing::HasSubstr("converted"));
+    run(begin_);
+    EXPECT_FALSE(is_preparing(lighting()));
+    model_.lights.preparation.grows = false;
+    model_.view.site.kind = SiteKind::object;
+    EXPECT_THAT(why_not(), testing::HasSubstr("rooms"));
+    model_.view.site.inside.emplace();
+    model_.view.entered = true;
+    EXPECT_EQ(why_not(), "") << "in the house";
+    model_.view.is_prepared = true;
+    EXPECT_THAT(why_not(), testing::HasSubstr("is prepared"));
+    model_.view.picture.reset();
+    EXPECT_NE(why_not(), "");
+}
+
+TEST_F(Preparing, ShowsWhatIsThereMeanwhileAndStopsWithTheEngineOfBefore) {
+    run(stop_);
+    EXPECT_EQ(engine(), "vpl");
+    run(begin_);
+    EXPECT_EQ(engine(), "paths");
+    EXPECT_EQ(engine_to_prepare(lighting()), "paths");
+    tell(at(.4));
+    EXPECT_TRUE(is_preparing(lighting()));
+    run("Scan colours");
+    EXPECT_EQ(engine(), "unlit");
+    EXPECT_EQ(engine_to_prepare(lighting()), "paths") << "it goes on";
+    run("Evening");
+    engine() = "paths";
+    run(stop_);
+    EXPECT_EQ(engine(), "vpl");
+    EXPECT_EQ(engine_to_prepare(lighting()), "");
+    EXPECT_THAT(model_.view.message, testing::HasSubstr("Stopped at 40 %"));
+    EXPECT_FALSE(is_preparing(lighting()));
+    EXPECT_EQ(why_not(), "") << "it can go on";
+}
+
+TEST_F(Preparing, SaysAfterwardsWhatThereIsAndWhere) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder / "scan.luc.paths.bake";
+    std::ofstream(file) << std::string(2'000'000, ' ');
+    run(begin_);
+    FrameStats done = at(1);
+    done.prepared_file = file;
+    tell(done);
+    EXPECT_FALSE(is_preparing(lighting()));
+    EXPECT_TRUE(model_.view.is_prepared);
+    EXPECT_EQ(engine_to_prepare(lighting()), "");
+    const std::string state = prepared_state(lighting());
+    EXPECT_THAT(state, testing::AllOf(testing::HasSubstr(file), testing::HasSubstr("1.9 MiB"))) << state;
+    EXPECT_EQ(engine(), "paths");
+}
+
+TEST_F(Preparing, WhatCannotBeKeptStaysUntilTheWindowIsClosedAndAFailureGivesTheOldEngineBack) {
+    run(begin_);
+    FrameStats unkept = at(1);
+    unkept.not_kept = "the disk is full";
+    tell(unkept);
+    EXPECT_TRUE(model_.view.is_prepared);
+    EXPECT_EQ(engine_to_prepare(lighting()), "paths") << "else it would be lost";
+    EXPECT_THAT(prepared_state(lighting()), testing::HasSubstr("the disk is full"));
+    model_.view.is_prepared = false;
+    engine() = "micro";
+    run(begin_);
+    EXPECT_EQ(engine(), "micro") << "chosen by hand";
+    engine() = "vpl";
+    run(stop_);
+    run(begin_);
+    FrameStats failed = at(.2);
+    failed.not_prepared = "a node cannot be read";
+    tell(failed);
+    EXPECT_EQ(engine(), "vpl");
+    EXPECT_FALSE(is_preparing(lighting()));
+    EXPECT_EQ(model_.view.message, "a node cannot be read");
 }
 
 TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {

@@ -200,5 +200,53 @@ TEST_F(WindowWithProject, WithHostileBytesIsPutAside) {
     close();
 }
 
+class PreparingWindow : public ViewerWindow {
+ protected:
+    void SetUp() override {
+        ViewerWindow::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        const std::string scan = folder_ / "nave.las";
+        cache_ = folder_ / "nave.luc";
+        ASSERT_EQ(lucarne("generate nave --points 30k -o " + scan).code, 0);
+        ASSERT_EQ(lucarne("convert " + scan + " -o " + cache_).code, 0);
+        engine_ = " --mood evening --preset preview";
+    }
+    bool said(const std::string& what) const {
+        return eventually([&] { return log().find(what) != std::string::npos; });
+    }
+    void close() {
+        xdo("key ctrl+q");
+        ASSERT_TRUE(eventually([&] {
+            xdo("key ctrl+d");  // asks only if anything would be lost
+            return !viewer_->running();
+        })) << log();
+        EXPECT_EQ(viewer_->code(), 0);
+    }
+};
+
+TEST_F(PreparingWindow, PreparesARoomByAKeyWhileItsPictureIsUsedAndFindsItAgain) {
+    const std::string file = cache_ + ".paths.bake";
+    start();
+    const auto before = picture(lit);
+    ASSERT_TRUE(before) << log();
+    EXPECT_FALSE(std::filesystem::exists(file)) << "nobody has asked for it";
+    xdo("key alt+r sleep 0.2 key Tab");
+    drag(1, 250, 300, 300, 320);
+    const auto turned =
+        picture([&](const io::Image8& now) { return lit(now) && difference(now, *before) > 2; });
+    EXPECT_TRUE(turned) << "the picture is used meanwhile";
+    ASSERT_TRUE(said("Prepared: ")) << log();
+    EXPECT_THAT(log(), HasSubstr(file));
+    EXPECT_TRUE(std::filesystem::exists(file));
+    const auto written = std::filesystem::last_write_time(file);
+    close();
+
+    start();
+    EXPECT_TRUE(picture(lit)) << log();
+    xdo("key alt+r");  // does nothing
+    close();
+    EXPECT_EQ(std::filesystem::last_write_time(file), written) << "it is not computed again";
+}
+
 }  // namespace
 }  // namespace lucarne

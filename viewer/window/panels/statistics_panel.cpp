@@ -33,6 +33,11 @@ void passes_table(const FrameStats& stats) {
     ImGui::EndTable();
 }
 
+void draw_preparing(const Preparing& now) {
+    ImGui::Text("Computed in advance: %.0f %%%s%s", now.share * 100, now.step.empty() ? "" : ", now ",
+                now.step.c_str());
+}
+
 }  // namespace
 
 void draw_statistics_panel(const ViewModel& model) {
@@ -56,8 +61,7 @@ void draw_statistics_panel(const ViewModel& model) {
         if (!stats.not_prepared.empty())
             ImGui::TextWrapped("Not computed in advance: %s", stats.not_prepared.c_str());
         else if (stats.prepared)
-            ImGui::Text("Computed in advance: %.0f %%%s%s", *stats.prepared * 100,
-                        stats.preparing.empty() ? "" : ", now ", stats.preparing.c_str());
+            draw_preparing(stats.prepared == 1 ? Preparing{1, {}} : model.view.preparing);
         ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
         ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
         ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),

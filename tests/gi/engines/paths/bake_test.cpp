@@ -1,6 +1,7 @@
 #include "gi/engines/paths/bake.h"
 
 #include <cstring>
+#include <utility>
 
 #include "gi/engines/paths/interpolation.h"
 #include "io/core/random.h"
@@ -30,7 +31,7 @@ TEST(PathsBake, AnInterruptedOneIsContinuedAsIfItHadNeverBeenStopped) {
     const BakeInput input = small_box();
     const auto whole = kPathsPrecomputes.make();
     finish(*whole, input);
-    for (const int taken : {1, 4, 12, 30}) {
+    for (const int taken : {1, 4, 12, 18, 24, 30}) {
         const auto first = kPathsPrecomputes.make();
         StepRunner<const BakeInput> runner;
         runner.start(first->steps(input));
@@ -61,8 +62,32 @@ TEST(PathsBake, OneThatWasBegunWithOtherPartsOfDiscsBeginsAgain) {
     ASSERT_LT(begun->share(), 1);
     const auto continued = kPathsPrecomputes.make();
     ASSERT_TRUE(continued->restore(now, begun->save()));
-    finish(*continued, now);
+    StepRunner<const BakeInput> second;
+    second.start(continued->steps(now));
+    while (!continued->snapshot() && second.running()) ASSERT_TRUE(second.run(now, StepBudget::timed(0)));
+    EXPECT_LT(continued->share(), .1) << "coarse paths come first, as in a new one";
+    ASSERT_TRUE(second.run(now, StepBudget{}));
     EXPECT_EQ(continued->save(), fresh->save());
+}
+
+TEST(PathsBake, LooksForHiddenNeighboursInStepsThatCanBeStopped) {
+    const BakeInput input = input_of(scenes::closed_box(1, 50, glm::vec3(.5f)), 10, 64);
+    const auto work = kPathsPrecomputes.make();
+    StepRunner<const BakeInput> runner;
+    runner.start(work->steps(input));
+    const auto is_looking = [&] { return runner.step() == "hidden neighbours" && work->share() > .1; };
+    while (runner.running() && !is_looking()) ASSERT_TRUE(runner.run(input, StepBudget::timed(0)));
+    size_t steps = 0;
+    double share = work->share();
+    for (; is_looking(); ++steps) {
+        const auto stopped = kPathsPrecomputes.make();
+        ASSERT_TRUE(stopped->restore(input, work->save())) << "what is done by then is kept";
+        ASSERT_TRUE(runner.run(input, StepBudget::timed(0)));
+        EXPECT_GT(work->share(), std::exchange(share, work->share()));
+    }
+    EXPECT_GT(steps, 1u);
+    ASSERT_TRUE(runner.run(input, StepBudget{}));
+    EXPECT_EQ(work->share(), 1);
 }
 
 TEST(PathsBake, CoarsePathsAreUsableBeforeAllAreMade) {

@@ -15,7 +15,7 @@ PointChooser::State all_points(const Surfaces& surfaces) {
     PointChooser chooser(surfaces, kSpacing, 64, 1);
     while (chooser.advance()) {
     }
-    return chooser.take();
+    return chooser.state();
 }
 
 class GatheringPoints : public testing::Test {
@@ -106,7 +106,7 @@ TEST_F(GatheringPoints, AreTheSameWhereverTheyWereInterruptedAndWithOneThread) {
     PointChooser first(surfaces_, kSpacing, 64, 1);
     for (int i = 0; i < 5; ++i) first.advance();
     PointChooser second(surfaces_, kSpacing, 64, 1);
-    ASSERT_TRUE(second.restore(first.take()));
+    ASSERT_TRUE(second.restore(first.state()));
     while (second.advance()) {
     }
     EXPECT_EQ(second.state().points, whole.points);
