@@ -7,9 +7,13 @@
 namespace lucarne::gi::paths {
 namespace {
 
-/// Of the smallest cells, in R-: between gathering points light is interpolated anyway.
-constexpr float kLeastCell = 1;
-/// Of the cells from all over which links start, in R+: light of further bounces is smooth.
+/// Of the smallest cells, in R+; at most R-. Larger ones hold patches of sun and what no gathering point sees
+/// of them.
+constexpr float kLeastCell = 0.5f;
+/// Of the width of a gathering ray, into which the group fits that it names: the means of larger ones bring
+/// light of parts that the point does not see.
+constexpr float kRayShare = 0.5f;
+/// Of the cells from all over which links start, in R+; at least R-: light of further bounces is smooth.
 constexpr float kLinkReach = 0.5f;
 constexpr size_t kPathsAtOnce = 131072;
 /// Shares of the work: gathering points, links; the rest are photons.
@@ -21,7 +25,8 @@ PathBuilder::PathBuilder(const Surfaces& surfaces, const PathPlan& plan)
     : surfaces_(surfaces), plan_(plan), chooser_(surfaces, plan.spacing, plan.rays, plan.seed) {}
 
 void PathBuilder::make_groups() {
-    groups_.emplace(surfaces_, chooser_.state().hits, kLeastCell * chooser_.state().spacing.least);
+    const PointChooser::State& state = chooser_.state();
+    groups_.emplace(surfaces_, state.hits, std::min(kLeastCell * state.spacing.most, state.spacing.least));
 }
 
 void PathBuilder::join_groups() {
@@ -31,11 +36,12 @@ void PathBuilder::join_groups() {
         if (state.hits[i].side != kNone)
             groups_->connect(leaf_of[state.points[i / plan_.rays].side], leaf_of[state.hits[i].side]);
     paths_.groups = groups_->join();
-    links_.emplace(surfaces_, *groups_, paths_.groups, kLinkReach * state.spacing.most, plan_.seed);
+    links_.emplace(surfaces_, *groups_, paths_.groups,
+                   std::max(kLinkReach * state.spacing.most, state.spacing.least), plan_.seed);
     paths_.rays_a_point = plan_.rays;
     for (const RayHit& hit : state.hits) {
         const bool met = hit.side != kNone;
-        paths_.rays.push_back(met ? paths_.groups.fitting(leaf_of[hit.side], hit.width) : kNone);
+        paths_.rays.push_back(met ? paths_.groups.fitting(leaf_of[hit.side], kRayShare * hit.width) : kNone);
         if (met) links_->ask(paths_.rays.back());
     }
 }
