@@ -198,16 +198,16 @@ class PathsPrecomputation final : public Precomputation {
     std::shared_ptr<const PathsBake> bake_;
 };
 
-/// About what MEASURED.md says of even scans at the default options: a ray of a gathering point costs more
-/// than its share of a surfel's other work from about 400 rays on.
+/// About what MEASURED.md says of naves. Large scans have few gathering points for their surfels.
 BakeCost cost_of(const EngineSettings& settings, uint64_t surfels) {
-    constexpr double kSeconds = 45e-6, kSecondsARay = .12e-6;  // a surfel
-    constexpr double kMemory = 500, kMemoryARay = 1;           // bytes
-    constexpr double kFile = 30, kFileARay = .15;
+    constexpr double kSeconds = 45e-6, kSecondsARay = .12e-6;                 // a surfel
+    constexpr double kMemory = 500, kMemoryARay = 1;                          // bytes
+    constexpr double kFile = 36, kMostOfFile = 100, kFileOfPointsARay = 8e4;  // bytes; of all points
     const auto count = static_cast<double>(surfels), rays = static_cast<double>(settings[kGatherRays]);
+    const double file = std::min(kFile * count + kFileOfPointsARay * rays, kMostOfFile * count);
     return {.cpu_seconds = count * (kSeconds + kSecondsARay * rays),
             .memory_bytes = static_cast<uint64_t>(count * (kMemory + kMemoryARay * rays)),
-            .file_bytes = static_cast<uint64_t>(count * (kFile + kFileARay * rays))};
+            .file_bytes = static_cast<uint64_t>(file)};
 }
 
 constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info, &kEntryPoints.info,
