@@ -139,7 +139,7 @@ uint seen_side(global const WideNode* nodes, Place place, const uint* slots, con
 }
 
 // Returns 1 less the mean cosine between a ray of a buffer and the directions of the cone about it that has the solid
-// angle of kRaysALobe rays: a quarter of the share of the sphere.
+// angle of kRaysALobe rays, which is the cone's share of the sphere.
 float spread_of(Place place, float3 ray) {
     float rays = 0.78539816f * GRID * GRID;  // in the disc that the grid covers
     return kRaysALobe * place.scale * place.scale / (4.0f * rays * fmax(ray.z, 0.1f));

@@ -23,6 +23,10 @@ namespace lucarne::gi {
 namespace {
 
 constexpr size_t kPixelsATask = 1024;
+/// Each pixel casts so many rays to a light with a size first. Where all those of 5 x 5 pixels pass, or none,
+/// the others would as well: shadows are softer than a pixel, so borders of light do not slip through.
+constexpr uint32_t kProbes = 2, kLeastToProbe = 4;
+constexpr size_t kMostProbed = 8;  ///< lights; what they tell takes a byte a pixel each
 
 glm::dvec2 random_square(Random& random) {
     const double x = random.uniform();
@@ -40,22 +44,55 @@ TracedLights::TracedLights(const tracing::SurfelTracer& tracer, std::span<const 
     if (takers > 0) samples_ = std::max<uint32_t>(samples / static_cast<uint32_t>(takers), 1);
 }
 
-glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& surface, uint64_t key) const {
-    // Most points face no light, or few, so the start of rays is found when it is needed.
-    std::optional<glm::vec3> start;
-    const auto is_lit = [&](const glm::vec3& direction, float distance) {
-        if (!start) {
-            const glm::vec3 above = tracing::offset_origin(point.position, point.normal, point.radius);
-            start = tracing::before_what_hides(tracer_, above, point.viewer, point.radius);
+/// Rays from a point to lights.
+class TracedLights::Rays {
+ public:
+    Rays(const tracing::SurfelTracer& tracer, const SurfacePoint& point) : tracer_(tracer), point_(point) {}
+
+    /// Whether nothing is in a direction as far as `distance`.
+    bool pass(const glm::vec3& direction, float distance) {
+        // Most points face no light, or few, so the start of rays is found when it is needed.
+        if (!start_) {
+            const glm::vec3 above = tracing::offset_origin(point_.position, point_.normal, point_.radius);
+            start_ = tracing::before_what_hides(tracer_, above, point_.viewer, point_.radius);
         }
-        return std::isinf(distance) ? !tracer_.occluded_along(*start, direction)
-                                    : !tracer_.occluded(*start, point.position + direction * distance);
-    };
+        return std::isinf(distance) ? !tracer_.occluded_along(*start_, direction)
+                                    : !tracer_.occluded(*start_, point_.position + direction * distance);
+    }
+
+ private:
+    const tracing::SurfelTracer& tracer_;
+    const SurfacePoint& point_;
+    std::optional<glm::vec3> start_;
+};
+
+size_t TracedLights::probed() const {
+    return samples_ >= kLeastToProbe && soft_.size() <= kMostProbed ? soft_.size() : 0;
+}
+
+void TracedLights::probe(const SurfacePoint& point, uint64_t key, std::span<uint8_t> sights) const {
+    Random random(key);
+    Rays rays(tracer_, point);
+    const uint32_t step = samples_ / kProbes;
+    for (size_t l = 0; l < soft_.size(); ++l) {
+        const glm::dvec2 shift = random_square(random);
+        for (uint32_t i = 0; i < kProbes; ++i) {
+            const auto in =
+                tracing::sample_light(soft_[l], point.position, lattice_point(i * step, samples_, shift));
+            if (!in || !(glm::dot(point.normal, in->direction) > 0)) continue;
+            sights[l] |= rays.pass(in->direction, in->distance) ? kSeen : kHidden;
+        }
+    }
+}
+
+glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& surface, uint64_t key,
+                                  std::span<const uint8_t> sights) const {
+    Rays rays(tracer_, point);
     glm::vec3 sum(0.0f);
     // `irradiance`: of a surface across the direction.
-    const auto add = [&](const glm::vec3& in, const glm::vec3& irradiance, float distance) {
+    const auto add = [&](const glm::vec3& in, const glm::vec3& irradiance, float distance, bool surely) {
         const float cosine = glm::dot(point.normal, in);
-        if (cosine > 0 && is_lit(in, distance))
+        if (cosine > 0 && (surely || rays.pass(in, distance)))
             sum += brdf(surface, point.normal, point.viewer, in) * cosine * irradiance;
     };
     for (const Light& light : sharp_) {
@@ -64,26 +101,79 @@ glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& 
         const float distance = light.kind == kDirectionalLight
                                    ? std::numeric_limits<float>::infinity()
                                    : glm::length(glm::vec3(light.position) - point.position);
-        if (irradiance != glm::vec3(0.0f) && is_lit(in, distance))
+        if (irradiance != glm::vec3(0.0f) && rays.pass(in, distance))
             sum += brdf(surface, point.normal, point.viewer, in) * irradiance;
     }
     Random random(key);
     const float share = 1 / static_cast<float>(samples_);
-    for (const Light& light : soft_) {
+    for (size_t l = 0; l < soft_.size(); ++l) {
         const glm::dvec2 shift = random_square(random);
+        const uint8_t sight = sights.empty() ? uint8_t{kSeenInPart} : sights[l];
+        if (sight == kHidden) continue;
         for (uint32_t i = 0; i < samples_; ++i)
             if (const auto in =
-                    tracing::sample_light(light, point.position, lattice_point(i, samples_, shift)))
-                add(in->direction, in->radiance * (share / in->pdf), in->distance);
+                    tracing::sample_light(soft_[l], point.position, lattice_point(i, samples_, shift)))
+                add(in->direction, in->radiance * (share / in->pdf), in->distance, sight == kSeen);
     }
     if (sky_.dark()) return sum;
     const glm::dvec2 shift = random_square(random);
     for (uint32_t i = 0; i < samples_; ++i) {
         const SkyDirections::Drawn drawn = sky_.draw(lattice_point(i, samples_, shift));
-        add(drawn.direction, drawn.flux * share, std::numeric_limits<float>::infinity());
+        add(drawn.direction, drawn.flux * share, std::numeric_limits<float>::infinity(), false);
     }
     return sum;
 }
+
+namespace {
+
+/// What pixels see of some lights: for each of them, one byte a pixel.
+class Sights {
+ public:
+    Sights(const CameraView& camera, size_t lights)
+        : width_(camera.width), height_(camera.height), lights_(lights), seen_(pixels() * lights) {}
+
+    size_t lights() const { return lights_; }
+    std::span<uint8_t> of(size_t pixel) { return std::span(seen_).subspan(pixel * lights_, lights_); }
+
+    /// Joins what each pixel sees with what those about it see.
+    void spread() {
+        spread_along(1, width_, width_, height_);
+        spread_along(width_, height_, 1, width_);
+    }
+
+ private:
+    size_t pixels() const { return size_t{width_} * height_; }
+    /// Joins along lines of `count` pixels that lie `step` apart; there are `lines`, of which the first
+    /// pixels lie `between` apart.
+    void spread_along(size_t step, size_t count, size_t between, size_t lines) {
+        std::vector<uint8_t> joined(seen_.size());
+        parallel_ranges(lines, kLinesATask, [&](size_t first, size_t last) {
+            for (size_t line = first; line < last; ++line)
+                for (size_t i = 0; i < count; ++i)
+                    for (size_t k = i - std::min(i, kAbout); k <= std::min(i + kAbout, count - 1); ++k)
+                        for (size_t l = 0; l < lights_; ++l)
+                            joined[(line * between + i * step) * lights_ + l] |=
+                                seen_[(line * between + k * step) * lights_ + l];
+        });
+        seen_ = std::move(joined);
+    }
+
+    static constexpr size_t kAbout = 2, kLinesATask = 16;
+    const uint32_t width_, height_;
+    const size_t lights_;
+    std::vector<uint8_t> seen_;
+};
+
+/// Calls visit(i) for the pixels that show a surface.
+template <class Visit>
+void each_surface(const Frame& frame, std::span<const SurfacePoint> surfaces, const Visit& visit) {
+    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last && !frame.stopped(); ++i)
+            if (surfaces[i].radius > 0) visit(i);
+    });
+}
+
+}  // namespace
 
 Result<void> LightCutTracer::update(Frame& frame, uint64_t revision) {
     if (tracer_ && revision_ == revision) return {};
@@ -103,15 +193,17 @@ void add_traced_light(Frame& frame, const tracing::SurfelTracer& tracer, const S
     const auto surfaces = visible_surfaces(frame.camera, download_gbuffer(frame));
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(surfaces.size());
     const std::vector<Material> materials = device_materials(frame.materials);
-    const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
-    parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last && !frame.stopped(); ++i) {
-            const SurfacePoint& at = surfaces[i];
-            if (!(at.radius > 0)) continue;
-            const Reflectance surface =
-                make_reflectance(materials[at.material % materials.size()], at.albedo);
-            radiance[i] += glm::vec4(lights.reflected(at, surface, mix64(~seed, i)), 0);
-        }
+    const uint64_t seed = ~mix64(frame.settings[kSeed], frame.index);
+    Sights sights(frame.camera, lights.probed());
+    if (sights.lights() > 0) {
+        each_surface(frame, surfaces,
+                     [&](size_t i) { lights.probe(surfaces[i], mix64(seed, i), sights.of(i)); });
+        sights.spread();
+    }
+    each_surface(frame, surfaces, [&](size_t i) {
+        const SurfacePoint& at = surfaces[i];
+        const Reflectance surface = make_reflectance(materials[at.material % materials.size()], at.albedo);
+        radiance[i] += glm::vec4(lights.reflected(at, surface, mix64(seed, i), sights.of(i)), 0);
     });
     if (!frame.stopped()) upload_radiance(frame, radiance);
 }

@@ -26,10 +26,24 @@ class TracedLights {
     TracedLights(const tracing::SurfelTracer& tracer, std::span<const Light> lights, const SkyDirections& sky,
                  uint32_t samples);
 
+    /// What points see of a light with a size: so may each of two bits be set.
+    enum Sight : uint8_t { kNoSight = 0, kSeen = 1, kHidden = 2, kSeenInPart = kSeen | kHidden };
+
+    /// Number of lights with a size about which few rays may tell what they are told in full; 0 if it would
+    /// not pay.
+    size_t probed() const;
+    /// Casts few rays to each of these lights, and sets what they tell; kNoSight where a light does not shine
+    /// on the point.
+    void probe(const SurfacePoint& point, uint64_t key, std::span<uint8_t> sights) const;
     /// Returns what a point reflects of the lights to its viewer, W/(sr m^2). `key` chooses the samples.
-    glm::vec3 reflected(const SurfacePoint& point, const Reflectance& surface, uint64_t key) const;
+    /// `sights`: of each light what the points about this one see of it. Where that is one and the same, no
+    /// more rays are cast to it. Empty: nothing is known.
+    glm::vec3 reflected(const SurfacePoint& point, const Reflectance& surface, uint64_t key,
+                        std::span<const uint8_t> sights) const;
 
  private:
+    class Rays;
+
     const tracing::SurfelTracer& tracer_;
     std::vector<Light> sharp_, soft_;
     const SkyDirections& sky_;

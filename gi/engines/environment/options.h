@@ -10,8 +10,8 @@ inline constexpr Option<uint32_t> kCacheSpacing{{
     .kind = OptionKind::integer,
     .key = "cache_spacing",
     .label = "cache spacing",
-    .help = "About how many pixels lie between places where light is gathered, others interpolate; more in "
-            "pictures larger than 250 x 250, twice as many in 1000 x 1000",
+    .help = "About how many pixels lie between places where light is gathered; others interpolate. Pictures "
+            "larger than 250 x 250 have wider spacing: twice in 1000 x 1000",
     .cost = "pixels from one place that gathers light to the next: half as many take four times as long,\n"
             "and resolve finer shadows",
     .least = 2,
