@@ -34,6 +34,8 @@ constexpr size_t kLeastCells = 4;
 constexpr double kLeastHidden = 0.5;  ///< of a hole's cells
 constexpr double kMostOfPlane = 0.5;  ///< a hole's area, in that of the plane's points
 constexpr double kSteep = 0.35;       ///< the rim's heights over the plane, in diameters
+/// Stations are known if so many of the points have one: others may have been received from anywhere.
+constexpr double kKnowStations = 0.95;
 // The same if no station is known.
 constexpr double kLeastSurfaceBlind = 0.9, kMostOfPlaneBlind = 0.1;
 constexpr float kFloor = 0.9f, kMostFloorHole = 2.0f, kMostHole = 0.4f;  ///< cosine; m, m
@@ -153,6 +155,11 @@ class HoleFinder {
         }
     }
 
+    /// Whether a hole does not end at a cell. Hidden cells beside surface bound wide holes as it does; what
+    /// a station looked at without receiving points bounds no narrow one.
+    bool is_open(PlaneCell state) const {
+        return state == PlaneCell::open || (narrow_ && state == PlaneCell::seen);
+    }
     static bool is_hidden(PlaneCell state) { return state == PlaneCell::hidden || state == PlaneCell::seen; }
     bool hidden(const glm::ivec2& cell) const {
         return grid_.inside(cell.x, cell.y) && is_hidden(state(cell));
@@ -160,8 +167,7 @@ class HoleFinder {
     PlaneCell state(const glm::ivec2& cell) const { return grid_[grid_.index(cell.x, cell.y)]; }
 
     /// Whether a hidden cell belongs to a hole. Gaps between single points have no cell without surface
-    /// around. Narrow holes have none either, but all of their cells are known to be hidden from all
-    /// stations.
+    /// around. In the narrow pass each cell that is hidden from all stations counts, also beside surface.
     bool is_core(const glm::ivec2& cell) const {
         if (narrow_) return grid_.inside(cell.x, cell.y) && state(cell) == PlaneCell::hidden;
         return hidden(cell) && std::ranges::none_of(kAround, [&](const glm::ivec2& step) {
@@ -199,7 +205,7 @@ class HoleFinder {
                 } else {
                     const PlaneCell rim = state(to);
                     ++(rim == PlaneCell::crease ? component.crease
-                       : rim == PlaneCell::open ? component.open
+                       : is_open(rim)           ? component.open
                                                 : component.surface);
                 }
             }
@@ -438,6 +444,10 @@ class HoleSearch {
             if (!(cells < most)) break;
             grids_.emplace_back(plane, cell);
         }
+        size_t with_station = 0;
+        for (const HolePoint& point : sample.points) with_station += point.station >= 0;
+        know_stations_ = !views_.empty() && static_cast<double>(with_station) >=
+                                                kKnowStations * static_cast<double>(sample.points.size());
         cover(sample);
         for (PlaneGrid& grid : grids_) grid.look(views_);
         creases_.resize(grids_.size());
@@ -449,8 +459,8 @@ class HoleSearch {
         std::vector<Hole> holes;
         std::vector<Tripod> tripods;
         for (size_t i = 0; i < grids_.size(); ++i)
-            HoleFinder(grids_[i], voxels_, i, !views_.empty()).find(holes, tripods);
-        if (!views_.empty()) find_narrow(holes);
+            HoleFinder(grids_[i], voxels_, i, know_stations_).find(holes, tripods);
+        if (know_stations_) find_narrow(holes);
         find_below(tripods, holes);
         const auto cells = [](const Hole& hole) {
             return hole.cells.size() + hole.creases.size() + hole.shores.size();
@@ -538,6 +548,7 @@ class HoleSearch {
     float cell_;
     Voxels voxels_;
     StationViews views_;
+    bool know_stations_ = false;
     std::vector<PlaneGrid> grids_;
     std::vector<std::vector<CreasePlane>> creases_;  ///< of each grid
     uint64_t work_ = 0;                              ///< steps of marking creases

@@ -17,8 +17,9 @@ constexpr float kMostReach = 4;                       ///< cells of the map
 constexpr size_t kLeastPoints = 64;
 /// Share of a station's points below its lowest direction: mixed pixels, the tripod.
 constexpr float kBeyond = 0.001f;
-/// The lowest direction varies by as much (sine) around the station, most if its place was estimated.
-constexpr float kLowestVaries = 0.04f;
+/// The lowest direction varies by as much (sine) around the station, most if its place was estimated. That of
+/// a scanner that looks no farther down than this has nothing to do with its tripod.
+constexpr float kLowestVaries = 0.04f, kDown = -0.5f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -64,7 +65,7 @@ void StationViews::find_lowest(View& view, std::vector<float>& heights) {
     const auto beyond = static_cast<size_t>(kBeyond * static_cast<float>(heights.size()));
     const auto low = heights.begin() + static_cast<ptrdiff_t>(beyond);
     std::nth_element(heights.begin(), low, heights.end());
-    view.lowest = *low;
+    view.below = *low < kDown ? *low + kLowestVaries : *low;
 }
 
 /// Enters the nearest range around in cells that received nothing, if most cells around did: the pattern of
@@ -130,7 +131,7 @@ Sight StationViews::at(const glm::vec3& place, const glm::vec3& normal, float be
     for (const View& view : views_) {
         const glm::vec3 offset = place - view.position;
         const float range = glm::length(offset);
-        if (!(range > 0) || offset.z < (view.lowest + kLowestVaries) * range) continue;
+        if (!(range > 0) || offset.z < view.below * range) continue;
         const float seen = view.range[cell_of(offset)];
         if (seen > range * (1 + kRangeError) + behind) return Sight::through;
         // The range of the surface varies so much over a cell of the map.

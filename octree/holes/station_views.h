@@ -30,7 +30,7 @@ class StationViews {
  private:
     struct View {
         glm::vec3 position{0.0f};
-        float lowest = -1;         ///< z of the lowest direction from which points were received
+        float below = -1;          ///< z of the direction below which nothing can have been received
         std::vector<float> range;  ///< m; infinity: nothing was received
     };
     void close_gaps(View& view) const;

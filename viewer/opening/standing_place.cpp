@@ -50,6 +50,7 @@ constexpr double kNearlyAsGood = .85;                        ///< share of the m
 constexpr double kNearlyAsFull = 1 / 1.5;                    ///< share of the most that a picture shows
 constexpr double kLowestStation = 1, kHighestStation = 2.6;  ///< over the floor
 constexpr double kFloorAround = 1.5;  ///< distance to a place to stand; there are no points below a tripod
+constexpr size_t kMostStations = 64;  ///< that are tried; of more, every second, third and so on
 constexpr double kLeastOfFloor = .5;  ///< share of the size of the floor from which most is seen
 constexpr glm::dvec2 kPreferred{.8, .6};  ///< along no wall of most rooms
 constexpr double kWalled = .8;            ///< share of blocked directions from which a place is in a room
@@ -145,13 +146,19 @@ struct Frame {
 /// Returns the distance to the nearest thing in the middle of a picture, at most `most`. What is low counts,
 /// too: a rail or a wire closely before the eye crosses the whole picture.
 double free_before(const OccupancyGrid& grid, const Frame& frame, double most) {
-    const int reach = static_cast<int>(most / grid.cell()) + 1;
-    const glm::ivec3 middle = grid.cell_of(frame.eye);
+    const glm::dvec3 aside = kHalfPicture.x * glm::dvec3(-frame.ahead.y, frame.ahead.x, 0),
+                     up(0, 0, kHalfPicture.y);
+    glm::dvec3 low = frame.eye, high = frame.eye;
+    for (const glm::dvec3& corner : {aside + up, aside - up, up - aside, -aside - up}) {
+        low = glm::min(low, frame.eye + most * (frame.ahead + corner));
+        high = glm::max(high, frame.eye + most * (frame.ahead + corner));
+    }
+    const glm::ivec3 middle = grid.cell_of(frame.eye), first = grid.cell_of(low), last = grid.cell_of(high);
     double nearest = most;
-    for (int z = -reach; z <= reach; ++z)
-        for (int y = -reach; y <= reach; ++y)
-            for (int x = -reach; x <= reach; ++x) {
-                const glm::ivec3 at = middle + glm::ivec3(x, y, z);
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int x = first.x; x <= last.x; ++x) {
+                const glm::ivec3 at(x, y, z);
                 if (at == middle || !grid.occupied(at)) continue;
                 const double depth = frame.depth_of(grid.middle(at));
                 if (depth > 0) nearest = std::min(nearest, depth);
@@ -213,16 +220,17 @@ RoomView look_along_the_room(const Survey& survey, const glm::dvec3& near, bool 
             if (space[(i + beside + kAzimuths) % kAzimuths] > space[i]) return false;
         return true;
     };
+    std::array<bool, kAzimuths> good{};
     std::array<double, kAzimuths> things{};  // in the pictures of good directions
     for (int i = 0; i < kAzimuths; ++i)
-        if (space[i] >= kNearlyAsGood * most && best_near(i))
+        if ((good[i] = space[i] >= kNearlyAsGood * most && best_near(i)))
             things[i] = static_cast<double>(std::ranges::count_if(
                 cells, [&](const glm::dvec3& cell) { return frames[i].depth_of(cell) > 0; }));
     const double fullest = *std::ranges::max_element(things);
     RoomView best;
     for (int i = 0; i < kAzimuths; ++i) {
-        const bool good = things[i] > 0 && things[i] >= kNearlyAsFull * fullest;
-        if (good && (best.space == 0 || preference(frames[i].ahead) > preference(best.ahead)))
+        const bool full = good[i] && things[i] >= kNearlyAsFull * fullest;
+        if (full && (best.space == 0 || preference(frames[i].ahead) > preference(best.ahead)))
             best = {frames[i].eye, frames[i].ahead, space[i]};
     }
     return best;
@@ -283,15 +291,26 @@ struct PlacedView {
 PlacedView from_station(const Survey& survey, const PlacedView& widest, std::span<const glm::dvec3> stations,
                         const std::vector<Place>& places, const std::vector<size_t>& floors) {
     const double least = kLeastOfFloor * static_cast<double>(floors[widest.under]);
+    struct Candidate {
+        glm::dvec3 station{0.0};
+        size_t under = 0;
+        RoomView view;
+    };
+    std::vector<Candidate> candidates;
+    const size_t step = (stations.size() + kMostStations - 1) / kMostStations;
+    for (size_t i = 0; i < stations.size(); i += step) {
+        const auto under = place_under(stations[i], places, floors, least, survey.metre);
+        if (under && enclosed(survey.grid, stations[i])) candidates.push_back({stations[i], *under, {}});
+    }
+    parallel_ranges(candidates.size(), 1, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            candidates[i].view = look_along_the_room(survey, candidates[i].station, true);
+    });
     PlacedView best = widest;
     best.view.space *= kNearlyAsGood;
     bool found = false;
-    for (const glm::dvec3& station : stations) {
-        const auto under = place_under(station, places, floors, least, survey.metre);
-        if (!under || !enclosed(survey.grid, station)) continue;
-        const RoomView view = look_along_the_room(survey, station, true);
-        if (view.space > best.view.space) best = {view, *under}, found = true;
-    }
+    for (const auto& [station, under, view] : candidates)
+        if (view.space > best.view.space) best = {view, under}, found = true;
     return found ? best : widest;
 }
 

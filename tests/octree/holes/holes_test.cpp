@@ -125,6 +125,27 @@ TEST(Holes, AWindowThatAStationLooksThroughStaysOpen) {
 }
 
 /// Through the door one sees the floor of the next room, but not the floor behind the wall beside it.
+/// Points without a station come to a scan with one. Its station never saw their wall, so the window in it is
+/// hidden from all stations that are known.
+TEST(Holes, AWindowOfPointsWithoutAStationStaysOpen) {
+    const std::vector<glm::vec3> stations{{2, 2, 1.7f}};
+    HoleSample sample = scan_walls(room(), stations);
+    std::vector<Wall> walls = room();
+    open_wall(walls, 1.5f, 3, 1, 2.2f);
+    const glm::vec3 away(20, 0, 0);
+    for (HolePoint point : scan_walls(walls, stations).points) {
+        point.position += away;
+        point.station = -1;
+        sample.points.push_back(point);
+    }
+    EXPECT_EQ(count(fill_points(sample),
+                    [&](const FillPoint& point) {
+                        const glm::vec3 at = point.position - away;
+                        return std::abs(at.x - 6) < 0.1f && at.z > 1.1f && at.z < 2.1f;
+                    }),
+              0);
+}
+
 TEST(Holes, ADoorStaysOpen) {
     std::vector<Wall> walls = room();
     open_wall(walls, 2, 3, 0, 2.1f);

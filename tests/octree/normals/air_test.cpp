@@ -140,8 +140,8 @@ TEST(Air, WiresOfSinglePointsAreThin) {
         cloud.stations.resize(cloud.points.size());
         const Estimate found = estimate(cloud);
         const Drawn discs = drawn(found, wire, cloud.points.size());
-        std::printf("wire %d: %zu of %zu discs, radius up to %.3f m\n", int(seed), discs.count,
-                    cloud.points.size() - wire, discs.widest);
+        std::printf("wire %zu: %zu of %zu discs, radius up to %.3f m\n", static_cast<size_t>(seed),
+                    discs.count, cloud.points.size() - wire, discs.widest);
         EXPECT_GE(discs.count, (cloud.points.size() - wire) * 9 / 10) << seed;
         EXPECT_LT(discs.widest, 4 * kStep) << seed;
     }

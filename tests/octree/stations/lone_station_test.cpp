@@ -53,8 +53,9 @@ TEST(LoneStation, BadInputShowsNone) {
     Random random(1);
     const auto any = [&] { return static_cast<float>(8 * random.uniform()); };
     for (int i = 0; i < 50000; ++i) {
-        floor.emplace_back(any(), any(), 0);
-        noise.emplace_back(any(), any(), any());
+        const float x = any(), y = any(), z = any();
+        floor.emplace_back(x, y, 0);
+        noise.emplace_back(x, y, z);
     }
     EXPECT_FALSE(find_lone_station(floor, {4, 4, 0})) << "every place over a plane sees all of it";
     EXPECT_FALSE(find_lone_station(noise, {4, 4, 0}));

@@ -64,7 +64,6 @@ TEST(Site, ViewsFromOtherEndsOrPlacesAreNotAlike) {
     EXPECT_TRUE(shown_alike(one, turned)) << "one is seen from outside";
 }
 
-/// A wide bench along half of the room, as high as a person's chest, under a cable tray.
 TEST(Site, NothingStandsCloselyBeforeTheEye) {
     std::vector<dvec3> points;
     add_faces(points, kRoom, 60000, true, 1);
@@ -100,6 +99,7 @@ TEST(Site, OfTwoWaysThatAreAsLongTheOneWithThingsIsSeen) {
     }
 }
 
+/// A wide bench along half of the room, as high as a person's chest, under a cable tray.
 TEST(Site, OneStandsOnTheFloorNotOnFurniture) {
     std::vector<dvec3> points;
     const Box high = {kRoom[0], dvec3(105, 212, 13.6)}, bench = {kRoom[0], dvec3(102.5, 212, 11.3)};

@@ -61,7 +61,8 @@ TEST(VolumeSights, RememberedAnswersAreThoseOfTheAir) {
     const auto below = [&](int count) { return static_cast<int>(count * random.uniform()); };
     std::vector<glm::ivec3> airs;
     for (const glm::ivec3 size = space.grid().size; airs.size() < 40;) {
-        const glm::ivec3 cell(below(size.x), below(size.y), below(size.z));
+        const int x = below(size.x), y = below(size.y), z = below(size.z);
+        const glm::ivec3 cell(x, y, z);
         if (space.voxels.is_air(cell)) airs.push_back(cell);
     }
     size_t seen = 0, hidden = 0, wrong = 0;
