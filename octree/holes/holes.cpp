@@ -34,6 +34,9 @@ constexpr size_t kLeastCells = 4;
 constexpr double kLeastHidden = 0.5;  ///< of a hole's cells
 constexpr double kMostOfPlane = 0.5;  ///< a hole's area, in that of the plane's points
 constexpr double kSteep = 0.35;       ///< the rim's heights over the plane, in diameters
+/// Cells have one surfel instead of four if there were more than this: synthetic surfels have no levels of
+/// detail, and pictures of few points, as in motion, leave them out if they are more than a quarter.
+constexpr size_t kMostFine = size_t{1} << 15;
 /// Stations are known if so many of the points have one: others may have been received from anywhere.
 constexpr double kKnowStations = 0.95;
 // The same if no station is known.
@@ -470,7 +473,7 @@ class HoleSearch {
         while (kept < holes.size() && all + cells(holes[kept]) <= limits_.most_points)
             all += cells(holes[kept++]);
         holes.resize(kept);
-        const int parts = 4 * all <= limits_.most_points ? 2 : 1;
+        const int parts = 4 * all <= std::min(limits_.most_points, kMostFine) ? 2 : 1;
         FoundHoles found;
         for (const Hole& hole : holes) fill(hole, parts, found.points);
         for (const Tripod& tripod : tripods) found.tripods.push_back(tripod.centre);
@@ -523,25 +526,25 @@ class HoleSearch {
     /// Fills each cell with `parts`^2 points.
     void fill(const Hole& hole, int parts, std::vector<FillPoint>& points) const {
         const PlaneGrid& grid = grids_[hole.plane];
-        const float pitch = 1 / static_cast<float>(parts);
         const glm::vec3 inside = grid.place_of(grid.flat_of(grid.cell_at(hole.cells.front())));
-        const auto add_point = [&](uint32_t cell, int i, bool divided) {
-            const glm::vec2 part(static_cast<float>(i % parts) + 0.5f, static_cast<float>(i / parts) + 0.5f);
+        // Adds the i-th of along^2 points of a cell.
+        const auto add_point = [&](uint32_t cell, int i, int along, bool divided) {
+            const float pitch = 1 / static_cast<float>(along);
+            const glm::vec2 part(static_cast<float>(i % along) + 0.5f, static_cast<float>(i / along) + 0.5f);
             const glm::vec2 flat = grid.flat_of(grid.cell_at(cell), pitch * part);
             if (divided && !same_side(creases_[hole.plane], grid.place_of(flat), inside, cell_)) return;
             points.push_back(interpolated(hole, grid, flat));
             points.back().area = pitch * pitch * cell_ * cell_;
         };
         const auto add = [&](uint32_t cell, bool divided) {
-            for (int i = 0; i < parts * parts; ++i) add_point(cell, i, divided);
+            for (int i = 0; i < parts * parts; ++i) add_point(cell, i, parts, divided);
         };
         for (const uint32_t cell : hole.cells) add(cell, false);
         for (const uint32_t cell : hole.creases) add(cell, true);
         // The points of the sample are sparser than those of the scan, whose small discs may end earlier.
-        if (parts != 2) return;
         for (const uint32_t cell : hole.shores)
             for (int quarter = 0; quarter < 4; ++quarter)
-                if (!grid.has_point(cell, quarter)) add_point(cell, quarter, true);
+                if (!grid.has_point(cell, quarter)) add_point(cell, quarter, 2, true);
     }
 
     const HoleLimits limits_;
