@@ -50,15 +50,16 @@ void PathBuilder::make_entries() {
     paths_.entries = choose_entries(surfaces_, *groups_, paths_.groups.area, links_->used(), chooser_.state(),
                                     plan_.seed, plan_.entries);
     paths_.links = links_->take();
-    paths_.photons.assign(paths_.entries.sides.size() * (kVertices - 1), kNone);
+    last_path_ = paths_.entries.sides.size();
+    paths_.photons.assign(last_path_ * (kVertices - 1), kNone);
 }
 
 bool PathBuilder::make_photons() {
-    const size_t count = paths_.entries.sides.size(), last = std::min(count, next_path_ + kPathsAtOnce);
+    const size_t last = std::min(last_path_, next_path_ + kPathsAtOnce);
     trace_photons(surfaces_, groups_->leaf_of(), paths_.entries, next_path_, last, plan_.seed,
                   std::span(paths_.photons).subspan(next_path_ * (kVertices - 1)));
     next_path_ = last;
-    return next_path_ < count;
+    return next_path_ < last_path_;
 }
 
 LightPaths PathBuilder::take() {
@@ -69,8 +70,8 @@ LightPaths PathBuilder::take() {
 
 double PathBuilder::share() const {
     if (!groups_) return kPointsShare * chooser_.share();
-    const double paths = static_cast<double>(paths_.entries.sides.size());
-    const double traced = paths > 0 ? static_cast<double>(next_path_) / paths : 0;
+    const double traced =
+        last_path_ > 0 ? static_cast<double>(next_path_) / static_cast<double>(last_path_) : 0;
     return kPointsShare + kLinksShare * (links_ ? links_->share() : 0) +
            (1 - kPointsShare - kLinksShare) * traced;
 }

@@ -47,7 +47,7 @@ class PathBuilder {
     PointChooser chooser_;
     std::optional<GroupBuilder> groups_;
     std::optional<LinkBuilder> links_;
-    size_t next_path_ = 0;
+    size_t next_path_ = 0, last_path_ = 0;  ///< photon paths: the next one, all
     LightPaths paths_;
 };
 

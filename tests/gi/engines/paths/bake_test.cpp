@@ -1,6 +1,7 @@
 #include "gi/engines/paths/bake.h"
 
 #include <cstring>
+#include <string>
 #include <utility>
 
 #include "gi/engines/paths/interpolation.h"
@@ -105,6 +106,21 @@ TEST(PathsBake, CoarsePathsAreUsableBeforeAllAreMade) {
     const auto all = std::dynamic_pointer_cast<const PathsBake>(work->snapshot());
     EXPECT_GT(all->paths.points.size(), 2 * coarse->paths.points.size());
     EXPECT_EQ(work->share(), 1);
+}
+
+TEST(PathsBake, TheFinishedShareNeverFalls) {
+    const BakeInput input = small_box();
+    const auto work = kPathsPrecomputes.make();
+    StepRunner<const BakeInput> runner;
+    runner.start(work->steps(input));
+    double share = 0;
+    while (runner.running()) {
+        const std::string step(runner.step());
+        ASSERT_TRUE(runner.run(input, StepBudget::timed(0)));
+        EXPECT_GE(work->share(), share) << step;
+        share = work->share();
+    }
+    EXPECT_EQ(share, 1);
 }
 
 TEST(PathsBake, NothingCoarseIsMadeThatNobodySees) {
