@@ -53,12 +53,16 @@ EngineBake::Inputs EngineBake::inputs_of(const BakeSubject& subject) {
 
 void EngineBake::update(const BakeSubject& subject) {
     if (!subject.engine.precomputes) {
+        if (!job_) return;
         job_.reset();
+        published_({});
         return;
     }
     Inputs inputs = inputs_of(subject);
-    if (job_ && inputs == inputs_) return;
-    job_.reset();  // keeps what it has done before the next one looks for it
+    const bool asked_again = std::exchange(again_, subject.again) != subject.again;
+    if (job_ && inputs == inputs_ && !(asked_again && !job_->status().error)) return;
+    job_.reset();    // keeps what it has done before the next one looks for it
+    published_({});  // the last one's share is not that of the next one
     inputs_ = std::move(inputs);
     const glm::dvec3 middle = (subject.bounds[0] + subject.bounds[1]) / 2.0;
     const auto& source = *subject.source;

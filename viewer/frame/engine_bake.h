@@ -27,6 +27,7 @@ struct BakeSubject {
     const gi::EngineSettings& settings;
     uint64_t points = 0;   ///< of the cut
     bool is_shown = true;  ///< while it is made; a precomputation that runs already goes on as it does
+    uint64_t again = 0;    ///< FrameRequest::prepares_again
 };
 
 /// Returns the file of an engine's finished precomputation for a scan that has not been written since; empty:
@@ -36,12 +37,13 @@ std::filesystem::path kept_bake(const gi::EngineInfo& engine, const octree::Node
 /// Runs the precomputation of the engine that draws pictures, and starts it again when an input changes.
 class EngineBake {
  public:
-    /// `published` is called on another thread when there is news.
+    /// `published` is called when there is news: on another thread, and by update() with an empty status when
+    /// another one begins or none runs any more.
     void on_news(std::function<void(const gi::BakeJob::Status&)> published) {
         published_ = std::move(published);
     }
-    /// Starts what the engine precomputes, unless that runs or is done. An engine that precomputes nothing
-    /// ends what runs.
+    /// Starts what the engine precomputes, unless that runs or has ended. One that has failed is started
+    /// again when it is asked for `again`. An engine that precomputes nothing ends what runs.
     void update(const BakeSubject& subject);
     /// Waits until it has ended or `stop` is true. Errors: it failed.
     Result<void> wait(const std::atomic<bool>* stop, Progress* progress) const;
@@ -74,6 +76,7 @@ class EngineBake {
     Inputs inputs_;
     gi::LocalFrame frame_;
     std::unique_ptr<gi::BakeJob> job_;
+    uint64_t again_ = 0;  ///< BakeSubject::again of the last update
 };
 
 }  // namespace lucarne::viewer

@@ -37,7 +37,7 @@ struct PictureWorker::State {
     gi::DeviceInfo device;
     bool stop = false;
     bool prepared = false;  ///< the engine's precomputation has news for another picture
-    Preparing preparing;
+    BakeProgress preparing;
     std::atomic<bool> give_up = false;  ///< the picture that is being made
     bool may_give_up = false;           ///< whether it may be, for one of a motion
     std::function<void()> published;
@@ -161,12 +161,13 @@ void PictureWorker::State::publish(Result<std::shared_ptr<Picture>> made, uint64
 Result<void> PictureWorker::State::take_source(gi::Device& gl,
                                                std::shared_ptr<const octree::NodeSource> other) {
     const std::shared_ptr<const octree::NodeSource> source = std::exchange(shown, nullptr);
-    if (!other) {
-        pipeline.reset();
+    if (!other) pipeline.reset();
+    {
         const std::lock_guard lock(mutex);
-        latest = nullptr;
-        return {};
+        preparing = {};
+        if (!other) latest = nullptr;
     }
+    if (!other) return {};
     if (pipeline) {
         if (auto taken = pipeline->set_source(other); !taken) {
             pipeline.reset();  // the pipeline may have lost parts of its state by then
@@ -176,7 +177,7 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
         told = {};
         LUCARNE_ASSIGN(pipeline, Pipeline::open(gl, other, options));
         pipeline->on_prepared([this, version = uint64_t{0}](const gi::BakeJob::Status& status) mutable {
-            const bool worth_a_picture = status.ended || status.version != version;
+            const bool worth_a_picture = status.ended || (status.bake && status.version != version);
             version = status.version;
             {
                 const std::lock_guard lock(mutex);
@@ -357,7 +358,7 @@ Result<void> PictureWorker::error() const {
     return state_->error;
 }
 
-Preparing PictureWorker::preparing() const {
+BakeProgress PictureWorker::preparing() const {
     const std::lock_guard lock(state_->mutex);
     return state_->preparing;
 }

@@ -31,8 +31,8 @@ struct PictureRequest {
     /// What makes another picture of it, for comparisons. `scene_version` stands for the scene.
     auto content() const {
         return std::tie(frame.camera, frame.size, frame.most_pixels, frame.front_only, frame.accumulate,
-                        frame.stand_in, frame.prepares, frame.colours_only, method, scene_version,
-                        shader_version, moving, sketch);
+                        frame.stand_in, frame.prepares, frame.prepares_again, frame.at_rest,
+                        frame.colours_only, method, scene_version, shader_version, moving, sketch);
     }
 };
 
@@ -70,7 +70,7 @@ struct WorkerDevice {
 };
 
 /// How far a precomputation is.
-struct Preparing {
+struct BakeProgress {
     double share = 0;  ///< the finished share, 0..1
     std::string step;  ///< that is being taken; empty at the end
 };
@@ -100,9 +100,9 @@ class PictureWorker {
     std::shared_ptr<const Picture> latest() const;  ///< null before the first picture, and without a source
     /// Returns the error if making the newest request's picture failed. It is not tried again.
     Result<void> error() const;
-    /// Returns how far a precomputation is; the last one's once it has ended. It is newer than that of the
-    /// last picture, since other shares alone are no reason for another one.
-    Preparing preparing() const;
+    /// Returns how far the present precomputation is, also once it has ended; nothing of earlier ones. It is
+    /// newer than that of the last picture, since other shares alone are no reason for another one.
+    BakeProgress preparing() const;
     /// Returns why the device was lost, while the worker waits for a new one. Device and pipeline have been
     /// destroyed by then; the source, the request and the last picture stay.
     std::optional<Error> lost_device() const;

@@ -72,7 +72,7 @@ struct Pipeline::State {
     Result<void> take_source(std::shared_ptr<const octree::NodeSource> from);
     gi::EngineNeeds needs(const FrameRequest& request) const;
     void choose_cuts(const FrameRequest& request);
-    Result<void> update_bake(bool is_shown, std::string_view prepares);
+    Result<void> update_bake(const FrameRequest& request, bool is_shown);
     Result<void> take_bake(const FrameRequest& request);
     void look_ahead(const FrameRequest& request);
     Result<void> stream(const FrameRequest& request);
@@ -164,21 +164,22 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
     cuts.changed();
 }
 
-/// `prepares`: as FrameRequest::prepares.
-Result<void> Pipeline::State::update_bake(bool is_shown, std::string_view prepares) {
+Result<void> Pipeline::State::update_bake(const FrameRequest& request, bool is_shown) {
     const gi::EngineInfo* prepared = &engine->info();
-    if (!prepared->precomputes && !prepares.empty()) {
-        LUCARNE_ASSIGN(const auto entry, gi::find_engine(prepares));
+    if (!prepared->precomputes && !request.prepares.empty()) {
+        LUCARNE_ASSIGN(const auto entry, gi::find_engine(request.prepares));
         prepared = &entry->info;
     }
-    bake.update({*prepared, source, bounds, surfels, scene, settings, budgets.light, is_shown});
+    const auto& rest = request.at_rest;
+    bake.update({*prepared, source, bounds, surfels, scene, rest ? rest->settings : settings,
+                 rest ? rest->budgets.light : budgets.light, is_shown, request.prepares_again});
     return {};
 }
 
 /// Takes what the engine has computed in advance so far; with `wait` all of it. Without `wait` a failure is a
 /// warning, and the engine draws without it. So is one to keep it.
 Result<void> Pipeline::State::take_bake(const FrameRequest& request) {
-    LUCARNE_TRY(update_bake(!request.wait, request.prepares));
+    LUCARNE_TRY(update_bake(request, !request.wait));
     if (!bake.running()) {
         baked = {};
         return {};
@@ -374,6 +375,7 @@ FrameStats Pipeline::State::stats(double seconds) const {
         result.prepared_for = prepared->name;
     }
     result.preparing = baked.step;
+    result.prepares_again = last.prepares_again;
     result.prepared_file = baked.file;
     if (!baked.error) result.not_prepared = baked.error.error().line();
     if (!baked.keeping) result.not_kept = baked.keeping.error().line();
@@ -492,7 +494,7 @@ Result<std::filesystem::path> Pipeline::prepare(Progress* progress) {
     State& state = *state_;
     if (!state.engine) LUCARNE_TRY(set_engine(gi::default_engine().name));
     LUCARNE_TRY(state.surfels.renew(state.scene));
-    LUCARNE_TRY(state.update_bake(false, {}));
+    LUCARNE_TRY(state.update_bake({}, false));
     LUCARNE_TRY(state.bake.wait(nullptr, progress));
     const gi::BakeJob::Status done = state.bake.status();
     LUCARNE_TRY(done.keeping);

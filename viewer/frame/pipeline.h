@@ -68,6 +68,11 @@ struct FrameRequest {
     /// An engine whose precomputation runs whatever engine draws; empty: only that of the one that draws, if
     /// it has one.
     std::string prepares;
+    uint64_t prepares_again =
+        0;  ///< once it is another number, a precomputation that has failed begins again
+    /// How pictures are made at rest; none: as this one. Precomputations are made for its settings and
+    /// budgets, so that a motion that reduces them starts none again.
+    std::optional<Method> at_rest;
     bool colours_only = false;  ///< shows the points' colours without light: the fastest picture
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
     Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
@@ -93,6 +98,7 @@ struct FrameStats {
     std::filesystem::path prepared_file;  ///< that holds it; empty: none does
     std::string preparing;                ///< the name of the step of it that is being taken; empty: none
     std::string not_prepared;             ///< why it failed
+    uint64_t prepares_again = 0;          ///< as in the request
     std::string not_kept;                 ///< why no file holds it
     uint64_t nodes_lost = 0;              ///< unreadable nodes, which are left out with their descendants
     std::string lost_node;                ///< why the first of these could not be read

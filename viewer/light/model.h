@@ -31,12 +31,14 @@ struct Preparation {
     uint64_t points = 0;                ///< of the open scans
     bool grows = false;                 ///< more of them are to come
     bool wanted = false;                ///< the user has asked for it, and it has not ended
-    std::string engine_before;          ///< that drew pictures then
+    uint64_t asked = 0;                 ///< how often the user has
+    std::string engine_before;          ///< that drew pictures then; empty: none but the prepared one
     std::filesystem::path place, file;  ///< where it would be kept; where it is kept; empty: nowhere
     uint64_t file_bytes = 0;
-    std::string problem;                          ///< why it has failed, or is not kept
-    std::chrono::steady_clock::time_point begun;  ///< when the first picture told of it
-    double share_at_begin = 0;
+    bool whole = false;                                          ///< the newest picture had all of it
+    std::string problem;                                         ///< why it has failed, or is not kept
+    std::optional<std::chrono::steady_clock::time_point> begun;  ///< when work on it was first seen
+    double share_at_begin = 0;                                   ///< and its share then
 };
 
 /// What the window remembers for lights in addition to the scene.

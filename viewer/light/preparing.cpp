@@ -4,16 +4,19 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "gi/bake/bake_file.h"
 #include "gi/bake/precomputation.h"
 #include "gi/registry.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
+#include "io/files/file.h"
 #include "viewer/opening/moods.h"
 
 namespace lucarne::viewer {
@@ -51,14 +54,26 @@ gi::BakeCost cost_of(const Lighting& model) {
     return (*entry)->info.precomputes->cost(method.settings, surfels);
 }
 
-/// Ends what the user has asked for. Pictures are by the engine that drew before.
+/// Returns the share that a kept file holds; none without one.
+std::optional<double> kept_share(const std::filesystem::path& path) {
+    std::error_code unknown;
+    if (path.empty() || !std::filesystem::exists(path, unknown)) return std::nullopt;
+    const auto file = InputFile::open_shared(path);
+    const auto header = file ? gi::read_bake_header(**file) : tl::make_unexpected(file.error());
+    return header ? std::optional(header->share) : std::nullopt;
+}
+
+/// Ends what is not finished. Pictures are by the engine that drew before, or by that of an unprepared view.
 void give_up(const Lighting& model) {
     Preparation& preparation = model.lights.preparation;
     preparation.wanted = false;
+    // A file that was found at the beginning was made with other options then.
+    model.view.is_prepared = false;
+    preparation.file.clear();
+    const std::string before = std::exchange(preparation.engine_before, {});
     std::string& engine = model.view.method.engine;
     if (engine != prepared_engine()) return;
-    engine = preparation.engine_before;
-    if (engine.empty()) engine = engine_here(model.view, model.lights.mood.value_or(Mood::evening));
+    engine = before.empty() ? engine_here(model.view, model.lights.mood.value_or(Mood::evening)) : before;
 }
 
 }  // namespace
@@ -115,8 +130,8 @@ std::string preparing_progress(const Lighting& model) {
     const Preparation& preparation = model.lights.preparation;
     const double share = prepared_share(model.view), done = share - preparation.share_at_begin;
     std::string text = fmt::format("{:.0f} %", std::floor(100 * share));
-    if (!preparation.wanted || done < kLeastProgress) return text;
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - preparation.begun;
+    if (!preparation.begun || done < kLeastProgress) return text;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - *preparation.begun;
     return text + ", about " + time_text(spent.count() * (1 - share) / done) + " left";
 }
 
@@ -135,9 +150,10 @@ void prepare(const Lighting& model) {
     Preparation& preparation = model.lights.preparation;
     preparation.wanted = true;
     preparation.problem.clear();
-    preparation.begun = {};
+    ++preparation.asked;
+    preparation.begun.reset();
     std::string& engine = model.view.method.engine;
-    preparation.engine_before = engine;
+    preparation.engine_before = engine == prepared_engine() ? std::string() : engine;
     const bool lit = !gi::engine_is(engine, &gi::EngineInfo::unlit);
     if (lit && shows_moods(engine, SiteKind::interior)) engine = prepared_engine();
     model.view.message = "Preparing light. " + preparing_cost(model);
@@ -145,34 +161,53 @@ void prepare(const Lighting& model) {
 
 void stop_preparing(const Lighting& model) {
     if (!is_preparing(model)) return;
-    model.view.message =
-        fmt::format("Stopped at {:.0f} %{}", std::floor(100 * prepared_share(model.view)),
-                    model.lights.preparation.place.empty() ? "" : "; it goes on from there the next time");
+    const bool is_there = kept_share(model.lights.preparation.place).value_or(1) < 1;
+    const std::string kept = is_there ? what_stopping_keeps(model) : "";
+    model.view.message = fmt::format("Stopped at {:.0f} %{}{}", std::floor(100 * prepared_share(model.view)),
+                                     kept.empty() ? "" : ". ", kept);
     give_up(model);
+}
+
+std::string what_stopping_keeps(const Lighting& model) {
+    const std::filesystem::path& place = model.lights.preparation.place;
+    if (place.empty()) return "Nothing is kept: there is no place for a file";
+    if (kept_share(place).value_or(0) >= 1)
+        return "Nothing is kept: the file holds what was made with other options";
+    return "Gathering points that are done are kept, and it continues from them";
+}
+
+void take_progress(const Lighting& model, BakeProgress progress) {
+    model.view.preparing = std::move(progress);
+    Preparation& preparation = model.lights.preparation;
+    const double share = prepared_share(model.view);
+    // What is restored from a file was not done since.
+    if (!preparation.wanted || share <= 0 || share < preparation.share_at_begin) preparation.begun.reset();
+    if (!preparation.wanted || share <= 0 || preparation.begun) return;
+    preparation.begun = std::chrono::steady_clock::now();
+    preparation.share_at_begin = share;
 }
 
 void follow_preparing(const Lighting& model) {
     Preparation& preparation = model.lights.preparation;
     const FrameStats* stats = stats_of(model.view);
     if (!stats) return;
-    if (preparation.begun == std::chrono::steady_clock::time_point{}) {
-        preparation.begun = std::chrono::steady_clock::now();
-        preparation.share_at_begin = *stats->prepared;
-    }
-    if (!stats->not_prepared.empty() && preparation.wanted) {
+    // A picture that was begun before the user asked again tells of the last failure.
+    const bool is_answer = preparation.wanted && stats->prepares_again == preparation.asked;
+    if (!stats->not_prepared.empty() && is_answer) {
         model.view.message = preparation.problem = stats->not_prepared;
         give_up(model);
         return;
     }
-    if (*stats->prepared < 1 || !stats->not_prepared.empty()) return;
+    const bool is_whole = *stats->prepared >= 1 && stats->not_prepared.empty();
+    const bool was_whole = std::exchange(preparation.whole, is_whole);
+    if (!is_whole) return;
     model.view.is_prepared = true;
     preparation.problem = stats->not_kept;
-    const std::filesystem::path& file = stats->prepared_file;
-    if (preparation.problem.empty() && file != preparation.file) {
-        preparation.file = file;
+    const auto file = preparation.problem.empty() ? stats->prepared_file : std::filesystem::path();
+    if (const bool is_other = std::exchange(preparation.file, file) != file; is_other || !was_whole)
         preparation.file_bytes = size_of(file);
-    }
     if (!std::exchange(preparation.wanted, false)) return;
+    preparation.engine_before.clear();
     model.view.message = prepared_state(model);
     log::info("{}", model.view.message);
     const bool lit = !gi::engine_is(model.view.method.engine, &gi::EngineInfo::unlit);

@@ -25,8 +25,12 @@ std::string prepared_state(const Lighting& model);
 /// Starts it. An engine of the moods gives way to the prepared one, which shows what is there meanwhile. Does
 /// nothing if why_not_prepared().
 void prepare(const Lighting& model);
-/// Stops it; what is done is kept. Pictures are by the engine that drew before.
+/// Stops it. Pictures are by the engine that drew before.
 void stop_preparing(const Lighting& model);
+/// Returns what is kept of it if it is stopped.
+std::string what_stopping_keeps(const Lighting& model);
+/// Takes the newest share, and measures from when work began, for the time that is left.
+void take_progress(const Lighting& model, BakeProgress progress);
 /// Applies what the newest picture, of the open scans, says of it.
 void follow_preparing(const Lighting& model);
 /// Begins with other scans.

@@ -31,7 +31,7 @@ void draw_progress(const Lighting& model) {
                        ImVec2(-button - style.ItemSpacing.x, 0), text.c_str());
     ImGui::SameLine();
     if (ImGui::Button(stop)) stop_preparing(model);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("What is done is kept, and goes on the next time");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", what_stopping_keeps(model).c_str());
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ struct View {
     bool entered = false;  ///< the user has gone inside
     /// What prepared_engine() computes in advance is known for the open scans.
     bool is_prepared = false;
-    Preparing preparing;  ///< what is being computed in advance
+    BakeProgress preparing;  ///< what is being computed in advance
 
     gi::Scene scene;
     uint64_t scene_version = 1, shown_changes = 0;

@@ -77,7 +77,7 @@ double ViewSession::seconds_at_rest() const {
 
 void ViewSession::take_picture() {
     if (!scans_.source()) return;  // the last scan was closed; the worker may not know it yet
-    model_.view.preparing = worker_.preparing();
+    take_progress(model_.lighting(), worker_.preparing());
     const auto latest = worker_.latest();
     if (!latest || (model_.view.picture && latest->number == model_.view.picture->number)) return;
     model_.view.picture = latest;
@@ -471,6 +471,8 @@ void ViewSession::send_request() {
                                  !gi::engine_is(request.method.engine, &gi::EngineInfo::unlit);
     request.frame.stand_in_early = true;
     request.frame.prepares = engine_to_prepare(model_.lighting());
+    request.frame.prepares_again = model_.lights.preparation.asked;
+    request.frame.at_rest = model_.view.method;
     if (request.moving) {
         const ImageSize size = quality_.size(request.frame.size);
         request.sketch = rest >= kSharp && !(size == request.frame.size);

@@ -198,6 +198,20 @@ TEST_F(Worker, ADeviceThatCannotBeMadeAgainCountsAsLostAndTheWorkerStillEnds) {
     EXPECT_EQ(lost->why, "is gone");
 }
 
+TEST_F(Worker, TellsNothingOfThePreparationOfAScanThatIsClosed) {
+    request_.frame.prepares = "paths";
+    request_.method.budgets.cap(20'000);
+    worker_->request(request_);
+    while (!worker_->latest() || worker_->latest()->stats.prepared != 1) {
+        published_.acquire();
+        ASSERT_TRUE(worker_->error()) << worker_->error().error().line();
+    }
+    EXPECT_EQ(worker_->preparing().share, 1);
+    worker_->set_source(nullptr);
+    EXPECT_TRUE(test::eventually([&] { return !worker_->latest(); }));
+    EXPECT_EQ(worker_->preparing().share, 0);
+}
+
 /// Overwrites a part of a file with zeros; `from` and `to` are shares of its size.
 void damage(const std::string& file, double from, double to) {
     const auto size = static_cast<double>(std::filesystem::file_size(file));

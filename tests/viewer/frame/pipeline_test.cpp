@@ -1,15 +1,19 @@
 #include "viewer/frame/pipeline.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "gi/bounce_options.h"
 #include "gi/registry.h"
 #include "tests/viewer/frame/with_cornell.h"
 #include "viewer/frame/engine_bake.h"
+#include "viewer/frame/quality.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -205,6 +209,74 @@ TEST_F(PipelineTest, PreparesForOneEngineWhileAnotherDraws) {
     EXPECT_EQ(stats.prepared, 1);
     request_.prepares.clear();
     EXPECT_EQ(frame("direct").prepared_for, "");
+}
+
+TEST_F(PipelineTest, AMotionWithReducedSettingsStartsNoPreparationAgain) {
+    std::atomic<int> begun = 0;
+    pipeline_->on_prepared([&](const gi::BakeJob::Status& status) {
+        if (status.step.empty() && status.share == 0 && !status.ended) ++begun;
+    });
+    request_.wait = false;
+    request_.stand_in_early = request_.complete = true;
+    request_.prepares = "paths";
+    const Preset high = *find_preset("high");
+    Method rest{"direct", high.engine, high.budgets};
+    rest.budgets.cap(20'000);
+    Method moving = rest;
+    MovingQuality().reduce(moving.settings, moving.budgets);
+    moving.budgets.light = 10'000;
+    ASSERT_FALSE(moving == rest);
+    double share = 0;
+    const auto draw = [&](bool moves) {
+        request_.at_rest = rest;
+        request_.moving = request_.stand_in = moves;
+        ASSERT_TRUE(pipeline_->set_method(moves ? moving : rest));
+        const auto stats = pipeline_->render(request_);
+        ASSERT_TRUE(stats) << stats.error().line();
+        ASSERT_TRUE(stats->prepared);
+        ASSERT_GE(*stats->prepared, share);
+        share = *stats->prepared;
+    };
+    for (bool moves = false; share < 1 && !HasFailure(); moves = !moves) draw(moves);
+    draw(true);
+    EXPECT_EQ(begun, 1);
+    rest.settings.set(gi::kSeed, uint64_t{2});
+    share = 0;
+    draw(false);
+    EXPECT_EQ(begun, 2) << "nobody sees the share of the last one";
+    request_.prepares.clear();
+    frame("direct");
+    EXPECT_EQ(begun, 3) << "none is left";
+}
+
+TEST_F(PipelineTest, APreparationThatFailedBeginsAgainOnlyIfItIsAskedForAgain) {
+    const auto cache = source_->identity()->file;
+    const std::string copy = folder_ / "copy.luc";
+    std::filesystem::copy_file(cache, copy);
+    const auto size = static_cast<size_t>(std::filesystem::file_size(cache));
+    const auto overwrite = [&](const std::string& bytes) {  // while the file is open
+        std::fstream(cache, std::ios::in | std::ios::out | std::ios::binary) << bytes;
+    };
+    std::ostringstream kept;
+    kept << std::ifstream(copy, std::ios::binary).rdbuf();
+    request_.wait = false;
+    request_.stand_in_early = true;
+    request_.prepares = "paths";
+    const auto ended = [&] {
+        FrameStats stats = frame("direct");
+        while (stats.not_prepared.empty() && stats.prepared < 1) stats = frame("direct");
+        EXPECT_EQ(stats.prepares_again, request_.prepares_again);
+        return stats.not_prepared;
+    };
+    std::string damaged = kept.str();
+    std::fill(damaged.begin() + static_cast<ptrdiff_t>(size / 4),
+              damaged.begin() + static_cast<ptrdiff_t>(size / 2), '\0');
+    overwrite(damaged);
+    EXPECT_NE(ended(), "");
+    overwrite(kept.str());
+    EXPECT_NE(ended(), "") << "nobody has asked again";
+    request_.prepares_again = 1;
+    EXPECT_EQ(ended(), "");
 }
 
 TEST_F(PipelineTest, KeptPreparationsAreFoundUnlessTheScanIsNewer) {

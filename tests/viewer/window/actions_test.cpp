@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <imgui.h>
 
+#include "gi/bake/bake_file.h"
 #include "tests/viewer/program.h"
 #include "viewer/light/preparing.h"
 
@@ -120,9 +121,9 @@ TEST(Actions, MoodsOfPreparedRoomsAreShownByTheirLightPaths) {
     EXPECT_EQ(model.view.method.engine, "micro") << "the chosen engine stays";
 }
 
-class Preparing : public testing::Test {
+class PreparingLight : public testing::Test {
  protected:
-    Preparing() {
+    PreparingLight() {
         model_.view.site.kind = SiteKind::interior;
         model_.view.site.outline = {glm::dvec3(0), glm::dvec3(1)};
         model_.view.method.engine = "vpl";
@@ -135,8 +136,8 @@ class Preparing : public testing::Test {
     void tell(const FrameStats& stats) {
         auto picture = std::make_shared<Picture>();
         picture->stats = stats;
-        model_.view.preparing.share = stats.prepared.value_or(0);
         model_.view.picture = picture;
+        take_progress(lighting(), {stats.prepared.value_or(0), ""});
         follow_preparing(lighting());
     }
     void run(const std::string& name) {
@@ -146,8 +147,9 @@ class Preparing : public testing::Test {
     Lighting lighting() { return model_.lighting(); }
     std::string why_not() { return why_not_prepared(lighting()); }
     std::string& engine() { return model_.view.method.engine; }
-    static FrameStats at(double share) {
+    FrameStats at(double share) const {
         FrameStats stats;
+        stats.prepares_again = model_.lights.preparation.asked;
         stats.prepared = share;
         stats.prepared_for = prepared_engine();
         return stats;
@@ -156,7 +158,7 @@ class Preparing : public testing::Test {
     ViewModel model_{10};
 };
 
-TEST_F(Preparing, SaysBeforeWhatItCostsAndWhyItCannotRun) {
+TEST_F(PreparingLight, SaysBeforeWhatItCostsAndWhyItCannotRun) {
     EXPECT_EQ(why_not(), "");
     EXPECT_THAT(preparing_cost(lighting()), testing::MatchesRegex("Takes about .* s on .* of memory .*"));
     model_.lights.preparation.grows = true;
@@ -175,7 +177,7 @@ TEST_F(Preparing, SaysBeforeWhatItCostsAndWhyItCannotRun) {
     EXPECT_NE(why_not(), "");
 }
 
-TEST_F(Preparing, ShowsWhatIsThereMeanwhileAndStopsWithTheEngineOfBefore) {
+TEST_F(PreparingLight, ShowsWhatIsThereMeanwhileAndStopsWithTheEngineOfBefore) {
     run(stop_);
     EXPECT_EQ(engine(), "vpl");
     run(begin_);
@@ -196,7 +198,7 @@ TEST_F(Preparing, ShowsWhatIsThereMeanwhileAndStopsWithTheEngineOfBefore) {
     EXPECT_EQ(why_not(), "") << "it can go on";
 }
 
-TEST_F(Preparing, SaysAfterwardsWhatThereIsAndWhere) {
+TEST_F(PreparingLight, SaysAfterwardsWhatThereIsAndWhere) {
     const test::TemporaryFolder folder;
     const std::string file = folder / "scan.luc.paths.bake";
     std::ofstream(file) << std::string(2'000'000, ' ');
@@ -212,7 +214,7 @@ TEST_F(Preparing, SaysAfterwardsWhatThereIsAndWhere) {
     EXPECT_EQ(engine(), "paths");
 }
 
-TEST_F(Preparing, WhatCannotBeKeptStaysUntilTheWindowIsClosedAndAFailureGivesTheOldEngineBack) {
+TEST_F(PreparingLight, WhatCannotBeKeptStaysUntilTheWindowIsClosedAndAFailureGivesTheOldEngineBack) {
     run(begin_);
     FrameStats unkept = at(1);
     unkept.not_kept = "the disk is full";
@@ -233,6 +235,85 @@ TEST_F(Preparing, WhatCannotBeKeptStaysUntilTheWindowIsClosedAndAFailureGivesThe
     EXPECT_EQ(engine(), "vpl");
     EXPECT_FALSE(is_preparing(lighting()));
     EXPECT_EQ(model_.view.message, "a node cannot be read");
+}
+
+TEST_F(PreparingLight, StopsWhereAFileOfOtherOptionsWasFound) {
+    begin_preparation(lighting(), {.points = 1'000'000, .file = "scan.luc.paths.bake"});
+    engine() = "unlit";
+    run("Evening");
+    EXPECT_EQ(engine(), "paths");
+    tell(at(.4));
+    ASSERT_TRUE(is_preparing(lighting()));
+    run(stop_);
+    EXPECT_EQ(engine(), "vpl");
+    EXPECT_FALSE(is_preparing(lighting()));
+    EXPECT_EQ(why_not(), "") << "the button is there again";
+    EXPECT_EQ(prepared_state(lighting()), "");
+}
+
+TEST_F(PreparingLight, AFailureOfTheEngineThatWasChosenByHandGivesWayToThatOfTheMood) {
+    engine() = "paths";
+    FrameStats failed = at(.2);
+    failed.not_prepared = "a node cannot be read";
+    tell(failed);
+    ASSERT_EQ(why_not(), "");
+    run(begin_);
+    tell(failed);
+    EXPECT_TRUE(is_preparing(lighting())) << "that picture was begun before";
+    failed.prepares_again = at(0).prepares_again;
+    tell(failed);
+    EXPECT_FALSE(is_preparing(lighting()));
+    EXPECT_EQ(engine(), "vpl");
+}
+
+TEST_F(PreparingLight, TheTimeThatIsLeftCountsOnlyWhatWasDoneSince) {
+    run(begin_);
+    tell(at(0));
+    tell(at(.6));
+    EXPECT_EQ(preparing_progress(lighting()), "60 %") << "it was restored";
+    tell(at(.7));
+    EXPECT_THAT(preparing_progress(lighting()), testing::MatchesRegex("70 %, about .* left"));
+    tell(at(0));
+    tell(at(.3));
+    EXPECT_EQ(preparing_progress(lighting()), "30 %") << "another began";
+}
+
+TEST_F(PreparingLight, NamesOnlyAFileThatHoldsItAndItsPresentSize) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder / "scan.luc.paths.bake";
+    std::ofstream(file) << std::string(2'000'000, ' ');
+    begin_preparation(lighting(), {.points = 1'000'000, .file = file});
+    engine() = "paths";
+    tell(at(.4));
+    std::ofstream(file) << std::string(4'000'000, ' ');
+    FrameStats done = at(1);
+    done.prepared_file = file;
+    tell(done);
+    EXPECT_THAT(prepared_state(lighting()), testing::HasSubstr("3.8 MiB"));
+    tell(at(.4));
+    done.not_kept = "the disk is full";
+    tell(done);
+    EXPECT_THAT(prepared_state(lighting()), testing::Not(testing::HasSubstr(file)));
+    EXPECT_EQ(engine_to_prepare(lighting()), "paths") << "else it would be lost";
+}
+
+TEST_F(PreparingLight, SaysWhatIsKeptOnlyWhereItIs) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder / "scan.luc.paths.bake";
+    const auto stop_with = [&](double kept) {
+        if (kept > 0) {
+            EXPECT_TRUE(gi::write_bake(file, {{"paths", 7, 1, kept}, {}}));
+        }
+        model_.lights.preparation.place = file;
+        run(begin_);
+        tell(at(.5));
+        run(stop_);
+        return model_.view.message;
+    };
+    EXPECT_EQ(stop_with(0), "Stopped at 50 %");
+    EXPECT_THAT(stop_with(.5), testing::HasSubstr("continues"));
+    EXPECT_EQ(stop_with(1), "Stopped at 50 %");
+    EXPECT_THAT(what_stopping_keeps(lighting()), testing::HasSubstr("Nothing"));
 }
 
 TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {

@@ -33,7 +33,7 @@ void passes_table(const FrameStats& stats) {
     ImGui::EndTable();
 }
 
-void draw_preparing(const Preparing& now) {
+void draw_bake_progress(const BakeProgress& now) {
     ImGui::Text("Computed in advance: %.0f %%%s%s", now.share * 100, now.step.empty() ? "" : ", now ",
                 now.step.c_str());
 }
@@ -61,7 +61,7 @@ void draw_statistics_panel(const ViewModel& model) {
         if (!stats.not_prepared.empty())
             ImGui::TextWrapped("Not computed in advance: %s", stats.not_prepared.c_str());
         else if (stats.prepared)
-            draw_preparing(stats.prepared == 1 ? Preparing{1, {}} : model.view.preparing);
+            draw_bake_progress(stats.prepared == 1 ? BakeProgress{1, {}} : model.view.preparing);
         ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
         ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
         ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),
