@@ -181,7 +181,7 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
             version = status.version;
             {
                 const std::lock_guard lock(mutex);
-                preparing = {status.share, status.step};
+                preparing = {status.share, status.step, status.ended};
                 prepared |= worth_a_picture;
             }
             changed.notify_all();

@@ -73,6 +73,7 @@ struct WorkerDevice {
 struct BakeProgress {
     double share = 0;  ///< the finished share, 0..1
     std::string step;  ///< that is being taken; empty at the end
+    bool ended = false;
 };
 
 /// A thread that owns a device and a pipeline and makes pictures of the newest request, so that the window

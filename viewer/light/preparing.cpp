@@ -130,6 +130,8 @@ std::string preparing_progress(const Lighting& model) {
     const Preparation& preparation = model.lights.preparation;
     const double share = prepared_share(model.view), done = share - preparation.share_at_begin;
     std::string text = fmt::format("{:.0f} %", std::floor(100 * share));
+    // Whether it failed or is kept is known with the next picture, which may take long.
+    if (share > 0 && model.view.preparing.ended) return text + ", ends with the next picture";
     if (!preparation.begun || done < kLeastProgress) return text;
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - *preparation.begun;
     return text + ", about " + time_text(spent.count() * (1 - share) / done) + " left";

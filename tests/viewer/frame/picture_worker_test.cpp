@@ -206,6 +206,7 @@ TEST_F(Worker, TellsNothingOfThePreparationOfAScanThatIsClosed) {
         published_.acquire();
         ASSERT_TRUE(worker_->error()) << worker_->error().error().line();
     }
+    EXPECT_TRUE(test::eventually([&] { return worker_->preparing().ended; }));
     EXPECT_EQ(worker_->preparing().share, 1);
     worker_->set_source(nullptr);
     EXPECT_TRUE(test::eventually([&] { return !worker_->latest(); }));

@@ -237,7 +237,8 @@ TEST_F(PipelineTest, AMotionWithReducedSettingsStartsNoPreparationAgain) {
         ASSERT_GE(*stats->prepared, share);
         share = *stats->prepared;
     };
-    for (bool moves = false; share < 1 && !HasFailure(); moves = !moves) draw(moves);
+    for (bool moves = false; share < 1 && begun <= 1 && !HasFailure(); moves = !moves) draw(moves);
+    ASSERT_EQ(share, 1) << "it has begun again";
     draw(true);
     EXPECT_EQ(begun, 1);
     rest.settings.set(gi::kSeed, uint64_t{2});

@@ -276,6 +276,9 @@ TEST_F(PreparingLight, TheTimeThatIsLeftCountsOnlyWhatWasDoneSince) {
     tell(at(0));
     tell(at(.3));
     EXPECT_EQ(preparing_progress(lighting()), "30 %") << "another began";
+    tell(at(.9));
+    take_progress(lighting(), {1, "", true});
+    EXPECT_EQ(preparing_progress(lighting()), "100 %, ends with the next picture");
 }
 
 TEST_F(PreparingLight, NamesOnlyAFileThatHoldsItAndItsPresentSize) {
