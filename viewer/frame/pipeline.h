@@ -144,8 +144,9 @@ class Pipeline {
     /// is unknown.
     Result<void> set_scene(gi::Scene scene);
 
-    /// Sets a function that is called on another thread when the engine's precomputation has news. Another
-    /// picture is worth making if it has another bake or has ended. Call before the first render().
+    /// Sets a function that is called when the engine's precomputation has news: on another thread, and by
+    /// render() when another begins or none is left. Another picture is worth making if it has another bake
+    /// or has ended. Call before the first render().
     void on_prepared(std::function<void(const gi::BakeJob::Status&)> published);
     /// Computes in advance all that the engine asks for with the present settings and scene, as render() with
     /// `wait` does, and keeps it. Returns the file; empty if there is no place for it. `progress` counts
