@@ -148,7 +148,7 @@ class SiteEstimator {
         glm::vec3 whole(0.0f);  // the normal of the whole neighbourhood at a crease
         double seen = reach;    // all points nearer than this are in `patch`
         std::optional<BentRim> bent;
-        if (sparser > kThin && fit.deviation < kPoorDeviation) bent = fit_bent_rim(nearest, fit);
+        if (sparser > kSparse && fit.deviation < kPoorDeviation) bent = fit_bent_rim(nearest, fit);
         const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
