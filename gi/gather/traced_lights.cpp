@@ -23,8 +23,9 @@ namespace lucarne::gi {
 namespace {
 
 constexpr size_t kPixelsATask = 1024;
-/// Each pixel casts so many rays to a light with a size first. Where all those of 5 x 5 pixels pass, or none,
-/// the others would as well: shadows are softer than a pixel, so borders of light do not slip through.
+/// Each pixel casts so many rays to a light with a size first. If all those of 5 x 5 pixels pass, the other
+/// rays are taken to pass, too; if none does, they are taken to be blocked. This clips the faint ends of
+/// penumbrae, also in averages: a pixel that sees 2 % of a light is dark in a third of the frames.
 constexpr uint32_t kProbes = 2, kLeastToProbe = 4;
 constexpr size_t kMostProbed = 8;  ///< lights; what they tell takes a byte a pixel each
 
@@ -135,10 +136,14 @@ class Sights {
     size_t lights() const { return lights_; }
     std::span<uint8_t> of(size_t pixel) { return std::span(seen_).subspan(pixel * lights_, lights_); }
 
-    /// Joins what each pixel sees with what those about it see.
+    /// Joins what each pixel sees with what those about it see. Of a light that it has not probed, because
+    /// its surface looks past it, others know nothing for it.
     void spread() {
+        const std::vector<uint8_t> own = seen_;
         spread_along(1, width_, width_, height_);
         spread_along(width_, height_, 1, width_);
+        for (size_t i = 0; i < own.size(); ++i)
+            if (own[i] == TracedLights::kNoSight) seen_[i] = TracedLights::kSeenInPart;
     }
 
  private:

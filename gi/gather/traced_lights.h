@@ -26,14 +26,14 @@ class TracedLights {
     TracedLights(const tracing::SurfelTracer& tracer, std::span<const Light> lights, const SkyDirections& sky,
                  uint32_t samples);
 
-    /// What points see of a light with a size: so may each of two bits be set.
+    /// What points see of a light with a size. Bits: what their rays met.
     enum Sight : uint8_t { kNoSight = 0, kSeen = 1, kHidden = 2, kSeenInPart = kSeen | kHidden };
 
-    /// Number of lights with a size about which few rays may tell what they are told in full; 0 if it would
-    /// not pay.
+    /// Number of lights with a size that are probed with few rays first; 0 if that would cost more than it
+    /// saves.
     size_t probed() const;
-    /// Casts few rays to each of these lights, and sets what they tell; kNoSight where a light does not shine
-    /// on the point.
+    /// Casts few rays to each of these lights, and adds what they met to `sights`, which must be kNoSight: it
+    /// stays so where no ray is above the surface.
     void probe(const SurfacePoint& point, uint64_t key, std::span<uint8_t> sights) const;
     /// Returns what a point reflects of the lights to its viewer, W/(sr m^2). `key` chooses the samples.
     /// `sights`: of each light what the points about this one see of it. Where that is one and the same, no

@@ -28,17 +28,17 @@ constexpr float kCreaseReach = 2.5f;  ///< m: so far a plane is continued to a c
 constexpr uint64_t kMostSteps = uint64_t{1} << 25;
 constexpr double kLeastExtent = 0.05, kMostExtent = 1e5;  ///< m, of the sample
 
+/// Cells have one surfel instead of four if there were more than this: synthetic surfels have no levels of
+/// detail, and pictures of few points, as in motion, leave them out if they are more than a quarter.
+constexpr size_t kMostFine = size_t{1} << 15;
+/// Stations are known if so many of the points have one: others may have been received from anywhere.
+constexpr double kKnowStations = 0.95;
 // What a hole's rim has to consist of, in shares of its length.
 constexpr double kLeastSurface = 0.15, kLeastKnown = 0.8;
 constexpr size_t kLeastCells = 4;
 constexpr double kLeastHidden = 0.5;  ///< of a hole's cells
 constexpr double kMostOfPlane = 0.5;  ///< a hole's area, in that of the plane's points
 constexpr double kSteep = 0.35;       ///< the rim's heights over the plane, in diameters
-/// Cells have one surfel instead of four if there were more than this: synthetic surfels have no levels of
-/// detail, and pictures of few points, as in motion, leave them out if they are more than a quarter.
-constexpr size_t kMostFine = size_t{1} << 15;
-/// Stations are known if so many of the points have one: others may have been received from anywhere.
-constexpr double kKnowStations = 0.95;
 // The same if no station is known.
 constexpr double kLeastSurfaceBlind = 0.9, kMostOfPlaneBlind = 0.1;
 constexpr float kFloor = 0.9f, kMostFloorHole = 2.0f, kMostHole = 0.4f;  ///< cosine; m, m
@@ -469,11 +469,17 @@ class HoleSearch {
             return hole.cells.size() + hole.creases.size() + hole.shores.size();
         };
         std::ranges::stable_sort(holes, std::greater<>(), cells);
-        size_t all = 0, kept = 0;
-        while (kept < holes.size() && all + cells(holes[kept]) <= limits_.most_points)
-            all += cells(holes[kept++]);
+        // A shore has up to four surfels, whatever the other cells have.
+        const auto most_of = [](const Hole& hole, size_t of_cell) {
+            return of_cell * (hole.cells.size() + hole.creases.size()) + 4 * hole.shores.size();
+        };
+        size_t coarse = 0, fine = 0, kept = 0;
+        for (; kept < holes.size() && coarse + most_of(holes[kept], 1) <= limits_.most_points; ++kept) {
+            coarse += most_of(holes[kept], 1);
+            fine += most_of(holes[kept], 4);
+        }
         holes.resize(kept);
-        const int parts = 4 * all <= std::min(limits_.most_points, kMostFine) ? 2 : 1;
+        const int parts = fine <= std::min(limits_.most_points, kMostFine) ? 2 : 1;
         FoundHoles found;
         for (const Hole& hole : holes) fill(hole, parts, found.points);
         for (const Tripod& tripod : tripods) found.tripods.push_back(tripod.centre);

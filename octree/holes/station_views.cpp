@@ -17,9 +17,10 @@ constexpr float kMostReach = 4;                       ///< cells of the map
 constexpr size_t kLeastPoints = 64;
 /// Share of a station's points below its lowest direction: mixed pixels, the tripod.
 constexpr float kBeyond = 0.001f;
-/// The lowest direction varies by as much (sine) around the station, most if its place was estimated. That of
-/// a scanner that looks no farther down than this has nothing to do with its tripod.
-constexpr float kLowestVaries = 0.04f, kDown = -0.5f;
+/// The lowest direction varies by as much (sine) around the station, most if its place was estimated.
+constexpr float kLowestVaries = 0.04f;
+/// Where the lowest direction (its sine) is higher than this, it has nothing to do with a tripod.
+constexpr float kDown = -0.5f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace

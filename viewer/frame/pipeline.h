@@ -68,7 +68,7 @@ struct FrameRequest {
     /// An engine whose precomputation runs whatever engine draws; empty: only that of the one that draws, if
     /// it has one.
     std::string prepares;
-    uint64_t prepares_again = 0;  ///< another number: a precomputation that has failed begins again
+    uint64_t prepares_again = 0;  ///< a changed number restarts a precomputation that has failed
     /// How pictures are made at rest; none: as this one. Precomputations are made for its settings and
     /// budgets, so that a motion that reduces them starts none again.
     std::optional<Method> at_rest;

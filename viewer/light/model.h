@@ -32,7 +32,7 @@ struct Preparation {
     bool grows = false;                 ///< more of them are to come
     bool wanted = false;                ///< the user has asked for it, and it has not ended
     uint64_t asked = 0;                 ///< how often the user has
-    std::string engine_before;          ///< that drew pictures then; empty: none but the prepared one
+    std::string engine_before;          ///< that drew pictures then; empty: the prepared one did already
     std::filesystem::path place, file;  ///< where it would be kept; where it is kept; empty: nowhere
     uint64_t file_bytes = 0;
     bool whole = false;                                          ///< the newest picture had all of it

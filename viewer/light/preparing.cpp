@@ -67,7 +67,7 @@ std::optional<double> kept_share(const std::filesystem::path& path) {
 void give_up(const Lighting& model) {
     Preparation& preparation = model.lights.preparation;
     preparation.wanted = false;
-    // A file that was found at the beginning was made with other options then.
+    // A file found at the start was for other options, or there would be nothing to stop.
     model.view.is_prepared = false;
     preparation.file.clear();
     const std::string before = std::exchange(preparation.engine_before, {});
@@ -172,9 +172,11 @@ void stop_preparing(const Lighting& model) {
 
 std::string what_stopping_keeps(const Lighting& model) {
     const std::filesystem::path& place = model.lights.preparation.place;
+    if (model.view.preparing.ended && prepared_share(model.view) >= 1)
+        return "It is finished, and is shown by the next picture";
     if (place.empty()) return "Nothing is kept: there is no place for a file";
     if (kept_share(place).value_or(0) >= 1)
-        return "Nothing is kept: the file holds what was made with other options";
+        return "Nothing is kept: the file holds a finished preparation for another scan or other options";
     return "Gathering points that are done are kept, and it continues from them";
 }
 

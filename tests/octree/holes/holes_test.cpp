@@ -124,7 +124,6 @@ TEST(Holes, AWindowThatAStationLooksThroughStaysOpen) {
     }
 }
 
-/// Through the door one sees the floor of the next room, but not the floor behind the wall beside it.
 /// Points without a station come to a scan with one. Its station never saw their wall, so the window in it is
 /// hidden from all stations that are known.
 TEST(Holes, AWindowOfPointsWithoutAStationStaysOpen) {
@@ -146,6 +145,7 @@ TEST(Holes, AWindowOfPointsWithoutAStationStaysOpen) {
               0);
 }
 
+/// Through the door one sees the floor of the next room, but not the floor behind the wall beside it.
 TEST(Holes, ADoorStaysOpen) {
     std::vector<Wall> walls = room();
     open_wall(walls, 2, 3, 0, 2.1f);

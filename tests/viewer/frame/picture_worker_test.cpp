@@ -205,6 +205,8 @@ TEST_F(Worker, TellsNothingOfThePreparationOfAScanThatIsClosed) {
     while (!worker_->latest() || worker_->latest()->stats.prepared != 1) {
         published_.acquire();
         ASSERT_TRUE(worker_->error()) << worker_->error().error().line();
+        const auto latest = worker_->latest();
+        ASSERT_TRUE(!latest || latest->stats.not_prepared.empty()) << latest->stats.not_prepared;
     }
     EXPECT_TRUE(test::eventually([&] { return worker_->preparing().ended; }));
     EXPECT_EQ(worker_->preparing().share, 1);

@@ -5,11 +5,15 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <semaphore>
 #include <sstream>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "gi/bounce_options.h"
+#include "gi/engines/paths/options.h"
 #include "gi/registry.h"
 #include "tests/viewer/frame/with_cornell.h"
 #include "viewer/frame/engine_bake.h"
@@ -212,16 +216,25 @@ TEST_F(PipelineTest, PreparesForOneEngineWhileAnotherDraws) {
 }
 
 TEST_F(PipelineTest, AMotionWithReducedSettingsStartsNoPreparationAgain) {
-    std::atomic<int> begun = 0;
-    pipeline_->on_prepared([&](const gi::BakeJob::Status& status) {
-        if (status.step.empty() && status.share == 0 && !status.ended) ++begun;
+    // The job's thread may tell news after this test has ended.
+    struct News {
+        std::atomic<int> begun = 0;
+        std::counting_semaphore<> told{0};
+    };
+    const auto news = std::make_shared<News>();
+    pipeline_->on_prepared([news](const gi::BakeJob::Status& status) {
+        if (status.step.empty() && status.share == 0 && !status.ended) ++news->begun;
+        news->told.release();
     });
+    const std::atomic<int>& begun = news->begun;
     request_.wait = false;
     request_.stand_in_early = request_.complete = true;
     request_.prepares = "paths";
     const Preset high = *find_preset("high");
     Method rest{"direct", high.engine, high.budgets};
     rest.budgets.cap(20'000);
+    rest.settings.set(gi::paths::kPointSpacing, 96);
+    rest.settings.set(gi::paths::kGatherRays, 64u);
     Method moving = rest;
     MovingQuality().reduce(moving.settings, moving.budgets);
     moving.budgets.light = 10'000;
@@ -237,7 +250,11 @@ TEST_F(PipelineTest, AMotionWithReducedSettingsStartsNoPreparationAgain) {
         ASSERT_GE(*stats->prepared, share);
         share = *stats->prepared;
     };
-    for (bool moves = false; share < 1 && begun <= 1 && !HasFailure(); moves = !moves) draw(moves);
+    for (bool moves = false; share < 1 && begun <= 1 && !HasFailure(); moves = !moves) {
+        draw(moves);
+        // Pictures without pause would take all the time from the job.
+        (void)news->told.try_acquire_for(std::chrono::milliseconds(200));
+    }
     ASSERT_EQ(share, 1) << "it has begun again";
     draw(true);
     EXPECT_EQ(begun, 1);
@@ -265,7 +282,10 @@ TEST_F(PipelineTest, APreparationThatFailedBeginsAgainOnlyIfItIsAskedForAgain) {
     request_.prepares = "paths";
     const auto ended = [&] {
         FrameStats stats = frame("direct");
-        while (stats.not_prepared.empty() && stats.prepared < 1) stats = frame("direct");
+        while (stats.not_prepared.empty() && stats.prepared < 1) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));  // pictures delay the job
+            stats = frame("direct");
+        }
         EXPECT_EQ(stats.prepares_again, request_.prepares_again);
         return stats.not_prepared;
     };
