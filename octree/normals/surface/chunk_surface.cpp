@@ -10,6 +10,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "io/core/parallel.h"
+#include "octree/normals/surface/bent_rim.h"
 #include "octree/normals/surface/crease.h"
 #include "octree/normals/surface/earned.h"
 #include "octree/normals/surface/surface_sample.h"
@@ -146,6 +147,8 @@ class SiteEstimator {
         bool narrow = false;    // the side is looked for as a narrow face
         glm::vec3 whole(0.0f);  // the normal of the whole neighbourhood at a crease
         double seen = reach;    // all points nearer than this are in `patch`
+        std::optional<BentRim> bent;
+        if (sparser > kSparse && fit.deviation < kPoorDeviation) bent = fit_bent_rim(nearest, fit);
         const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
@@ -187,7 +190,9 @@ class SiteEstimator {
                 narrow = !side && (clearly || poor) && sparser <= kSparse;
                 if (narrow) side = fit_narrow_side(nearest, window_, wide, spacing, !poor);
             }
+            if (side && bent && bent->variance < side->variance) side.reset();
             if (side) {
+                bent.reset();
                 patch = &window_;
                 whole = fit.deviation < kPoorDeviation ? fit.normal : glm::vec3(side->plane.normal);
                 fit.normal = glm::vec3(side->plane.normal);
@@ -195,6 +200,12 @@ class SiteEstimator {
                 fit.variance = side->variance;
                 fit.layer = side->layer;
             }
+        }
+        if (bent) {
+            patch = &nearest;
+            fit.normal = bent->normal;
+            fit.variance = bent->variance;
+            fit.layer = bent->layer;
         }
         connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, side ? whole : fit.normal);
         if (!(fit.deviation < kPoorDeviation)) {

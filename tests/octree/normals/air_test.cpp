@@ -225,6 +225,47 @@ TEST(Air, LonePointsAreOutliersWhereNotAllNeighboursAreKnown) {
     EXPECT_LE(lost, 3u) << "of the walls";
 }
 
+/// The far side of a column, of which other stations saw a strip of sparse points. The plane of those that
+/// are around one of the last is that of the strip's middle, so discs stuck out of the column's outline.
+TEST(Air, DiscsAtTheSparseRimOfAColumnStayOnIt) {
+    Random random(20);
+    Cloud column;
+    constexpr double kRadius = 0.45, kHeight = 3, kDense = 1.0, kEnd = 1.9, kSparseSpacing = 0.075;
+    const auto add_strip = [&](double from, double to, double spacing) {
+        const auto count = static_cast<size_t>((to - from) * kRadius * kHeight / (spacing * spacing));
+        for (size_t i = 0; i < count; ++i) {
+            const double angle = from + (to - from) * random.uniform();
+            const glm::dvec3 n(std::cos(angle), std::sin(angle), 0);
+            const double off = 0.002 * gaussian(random);
+            column.points.push_back((kRadius + off) * n + glm::dvec3(0, 0, kHeight * random.uniform()));
+            column.normals.push_back(n);
+        }
+    };
+    add_strip(-1, kDense, kWallSpacing);
+    const size_t first = column.points.size();
+    add_strip(kDense, kEnd, kSparseSpacing);
+    const Estimate found = estimate(column);
+    std::vector<double> bent, away;  // degrees; how far discs reach over the column, along its outline
+    for (size_t i = first; i < column.points.size(); ++i) {
+        const double angle = std::atan2(column.points[i].y, column.points[i].x);
+        if (angle < kEnd - 0.2 || std::abs(column.points[i].z - kHeight / 2) > kHeight / 2 - 0.2) continue;
+        const double radius = drawn_radius(found, i);
+        if (found.normals[i] == glm::vec3(0.0f) || !(radius > 0)) continue;
+        const glm::dvec3 n(found.normals[i]), &truth = column.normals[i];
+        bent.push_back(std::acos(std::min(1.0, std::abs(glm::dot(n, truth)))) * 180 / std::numbers::pi);
+        away.push_back(radius * std::sqrt(std::max(0.0, 1 - glm::dot(n, truth) * glm::dot(n, truth))));
+    }
+    std::sort(bent.begin(), bent.end());
+    std::sort(away.begin(), away.end());
+    ASSERT_GT(bent.size(), 20u);
+    const size_t middle = bent.size() / 2, most = bent.size() * 9 / 10;
+    std::printf(
+        "%zu discs: normals off by %.1f, %.1f degrees (p50, p90), rims over the column %.3f, %.3f m\n",
+        bent.size(), bent[middle], bent[most], away[middle], away[most]);
+    EXPECT_LT(bent[middle], 8.5) << "10.5 with the plane of the points around";
+    EXPECT_LT(away[middle], 0.009) << "it was .012";
+}
+
 /// Every share of hostile clouds is finite, and no disc is wider than the cloud.
 TEST(Air, HostileCloudsAreDefined) {
     Random random(16);
