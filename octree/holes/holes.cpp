@@ -469,19 +469,15 @@ class HoleSearch {
             return hole.cells.size() + hole.creases.size() + hole.shores.size();
         };
         std::ranges::stable_sort(holes, std::greater<>(), cells);
-        // A shore has up to four surfels, whatever the other cells have.
-        const auto most_of = [](const Hole& hole, size_t of_cell) {
-            return of_cell * (hole.cells.size() + hole.creases.size()) + 4 * hole.shores.size();
-        };
-        size_t coarse = 0, fine = 0, kept = 0;
-        for (; kept < holes.size() && coarse + most_of(holes[kept], 1) <= limits_.most_points; ++kept) {
-            coarse += most_of(holes[kept], 1);
-            fine += most_of(holes[kept], 4);
-        }
+        size_t all = 0, kept = 0;
+        while (kept < holes.size() && all + cells(holes[kept]) <= limits_.most_points)
+            all += cells(holes[kept++]);
         holes.resize(kept);
-        const int parts = fine <= std::min(limits_.most_points, kMostFine) ? 2 : 1;
+        // A shore has up to four surfels, whatever the other cells have.
+        const bool shores = 4 * all <= limits_.most_points;
+        const int parts = shores && 4 * all <= kMostFine ? 2 : 1;
         FoundHoles found;
-        for (const Hole& hole : holes) fill(hole, parts, found.points);
+        for (const Hole& hole : holes) fill(hole, parts, shores, found.points);
         for (const Tripod& tripod : tripods) found.tripods.push_back(tripod.centre);
         return found;
     }
@@ -529,8 +525,8 @@ class HoleSearch {
         }
     }
 
-    /// Fills each cell with `parts`^2 points.
-    void fill(const Hole& hole, int parts, std::vector<FillPoint>& points) const {
+    /// Fills each cell with `parts`^2 points, and the rim's cells if `shores`.
+    void fill(const Hole& hole, int parts, bool shores, std::vector<FillPoint>& points) const {
         const PlaneGrid& grid = grids_[hole.plane];
         const glm::vec3 inside = grid.place_of(grid.flat_of(grid.cell_at(hole.cells.front())));
         // Adds the i-th of along^2 points of a cell.
@@ -548,6 +544,7 @@ class HoleSearch {
         for (const uint32_t cell : hole.cells) add(cell, false);
         for (const uint32_t cell : hole.creases) add(cell, true);
         // The points of the sample are sparser than those of the scan, whose small discs may end earlier.
+        if (!shores) return;
         for (const uint32_t cell : hole.shores)
             for (int quarter = 0; quarter < 4; ++quarter)
                 if (!grid.has_point(cell, quarter)) add_point(cell, quarter, 2, true);

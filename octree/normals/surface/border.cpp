@@ -27,10 +27,7 @@ constexpr float kFarthest = 2.0f;  ///< lines farther from the point are of no u
 constexpr float kOthersAhead = 2.5f, kOthersBehind = 1.5f;  ///< of the line: where other surfaces count
 constexpr float kOthersHeight = 3.0f;
 constexpr float kAhead = 1.0f;  ///< another surface that begins so far beyond the line goes on from this one
-/// Points farther from the plane than this many times their distance from the line are the other side of a
-/// column.
-constexpr float kSteepBeside = 1.5f;
-constexpr int kFewOthers = 2;      ///< as many points of another surface may be noise
+constexpr int kFewOthers = 2;   ///< as many points of another surface may be noise
 constexpr float kSteepest = 1.0f;  ///< the border turns by at most 45 degrees from what `outward` says
 constexpr int kSteps = 12;         ///< of the search for its direction
 constexpr size_t kMostHull = 128;  ///< points that decide; where there are more, the spacing says little
@@ -93,7 +90,7 @@ std::optional<Border> find_border(const Tile& around, const glm::vec3& centre, c
         }
         crossing += u > kLook * spacing && std::abs(h) < u;
         if (u > kOthersAhead * spacing || std::abs(h) > kOthersHeight * spacing) continue;
-        if (u > kAhead * spacing && std::abs(h) < kSteepBeside * u) return std::nullopt;
+        if (u > kAhead * spacing) return std::nullopt;
         ++(h > 0 ? before : behind);
     }
     if (before > kFewOthers && behind > kFewOthers) return std::nullopt;
