@@ -7,6 +7,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "octree/stations/cube_map.h"
+
 namespace lucarne::octree {
 namespace {
 
@@ -90,19 +92,6 @@ void StationViews::close_gaps(View& view) const {
             }
 }
 
-/// Returns the cell of a direction: the face by its longest axis, then the two other axes.
-size_t StationViews::cell_of(const glm::vec3& direction) const {
-    const glm::vec3 size = glm::abs(direction);
-    const glm::length_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const float scale = 0.5f * static_cast<float>(side_) / std::max(size[axis], 1e-30f);
-    const auto cell = [&](float v) {
-        return static_cast<size_t>(
-            std::clamp(v * scale + 0.5f * static_cast<float>(side_), 0.0f, static_cast<float>(side_) - 0.5f));
-    };
-    const auto face = static_cast<size_t>(2 * axis + (direction[axis] < 0));
-    return (face * side_ + cell(direction[(axis + 1) % 3])) * side_ + cell(direction[(axis + 2) % 3]);
-}
-
 /// Enters a point, as a disc of `radius` (m) in its surface.
 void StationViews::splat(View& view, const HolePoint& point, float radius) const {
     const glm::vec3 offset = point.position - view.position;
@@ -110,7 +99,7 @@ void StationViews::splat(View& view, const HolePoint& point, float radius) const
     if (!(range > 0)) return;
     const float cell = 2.0f / static_cast<float>(side_) * range;  // m, at most
     const auto enter = [&](const glm::vec3& to) {
-        float& known = view.range[cell_of(to)];
+        float& known = view.range[cube_map_cell(to, side_)];
         known = std::min(known, glm::length(to));
     };
     const float reach = std::min(radius, kMostReach * cell);
@@ -133,7 +122,7 @@ Sight StationViews::at(const glm::vec3& place, const glm::vec3& normal, float be
         const glm::vec3 offset = place - view.position;
         const float range = glm::length(offset);
         if (!(range > 0) || offset.z < view.below * range) continue;
-        const float seen = view.range[cell_of(offset)];
+        const float seen = view.range[cube_map_cell(offset, side_)];
         if (seen > range * (1 + kRangeError) + behind) return Sight::through;
         // The range of the surface varies so much over a cell of the map.
         const float facing = std::max(std::abs(glm::dot(offset, normal)) / range, kLeastFacing);

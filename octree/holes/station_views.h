@@ -34,7 +34,6 @@ class StationViews {
         std::vector<float> range;  ///< m; infinity: nothing was received
     };
     void close_gaps(View& view) const;
-    size_t cell_of(const glm::vec3& direction) const;
     void splat(View& view, const HolePoint& point, float radius) const;
     static void find_lowest(View& view, std::vector<float>& heights);
 

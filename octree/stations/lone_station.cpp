@@ -12,13 +12,16 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "octree/stations/cube_map.h"
 
 namespace lucarne::octree {
 namespace {
 
 constexpr size_t kPointsAsked = size_t{1} << 17, kFewestPoints = 20'000;
 constexpr float kOutermost = 1e15f;  ///< m; what is farther away, infinite or not a number is left out
-constexpr int kMapSide = 96;         ///< cells of the map along a face of a cube: about 1 degree
+constexpr uint32_t kMapSide = 96;    ///< cells of the map along a face of a cube: about 1 degree
 /// A point is hidden by one in its cell if it is so much farther away: a cell of a floor at a flat angle has
 /// points of different distances, too.
 constexpr float kBehindTimes = 1.2f, kBehindBy = 0.1f;                      ///< m
@@ -49,7 +52,7 @@ class HiddenPoints {
         for (size_t i = 0; i < points_.size(); ++i) {
             const glm::vec3 to = points_[i] - place;
             ranges_[i] = glm::length(to);
-            cells_[i] = cell_of(to);
+            cells_[i] = static_cast<uint32_t>(cube_map_cell(to, kMapSide));
             nearest_[cells_[i]] = std::min(nearest_[cells_[i]], ranges_[i]);
         }
         size_t hidden = 0;
@@ -59,18 +62,6 @@ class HiddenPoints {
     }
 
  private:
-    /// Returns the cell of a direction: the face by its longest axis, then the two other axes.
-    static uint32_t cell_of(const glm::vec3& to) {
-        const glm::vec3 size = glm::abs(to);
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        const float scale = 0.5f * kMapSide / std::max(size[axis], 1e-30f);
-        const auto cell = [&](float v) {
-            return static_cast<uint32_t>(std::clamp(v * scale + 0.5f * kMapSide, 0.0f, kMapSide - 0.5f));
-        };
-        const auto face = static_cast<uint32_t>(2 * axis + (to[axis] < 0));
-        return (face * kMapSide + cell(to[(axis + 1) % 3])) * kMapSide + cell(to[(axis + 2) % 3]);
-    }
-
     std::vector<glm::vec3> points_;
     std::vector<float> ranges_, nearest_;
     std::vector<uint32_t> cells_;

@@ -374,7 +374,6 @@ FrameStats Pipeline::State::stats(double seconds) const {
         result.prepared = baked.ended ? baked.share : std::min(baked.share, kAlmost);
         result.prepared_for = prepared->name;
     }
-    result.preparing = baked.step;
     result.prepares_again = last.prepares_again;
     result.prepared_file = baked.file;
     if (!baked.error) result.not_prepared = baked.error.error().line();

@@ -95,7 +95,6 @@ struct FrameStats {
     std::optional<double> prepared;
     std::string prepared_for;             ///< for which engine; empty: none
     std::filesystem::path prepared_file;  ///< that holds it; empty: none does
-    std::string preparing;                ///< the name of the step of it that is being taken; empty: none
     std::string not_prepared;             ///< why it failed
     uint64_t prepares_again = 0;          ///< as in the request
     std::string not_kept;                 ///< why no file holds it

@@ -20,8 +20,8 @@ struct BentRim {
 /// The normal of their best plane is that in the middle of them, not that at the point, so the point's disc
 /// would stick out of a sparse curved surface. Local polynomials give the normal at the end, too (jets:
 /// Cazals and Pouget 2005, "Estimating differential quantities using polynomial fitting of osculating jets").
-/// Returns nothing if points lie all around, if the neighbours have several layers, or if the bend does not
-/// explain most of the heights over the plane.
+/// Returns nothing if points lie all around, or if the bend does not explain most of the heights over the
+/// plane, as where the neighbours have several layers.
 std::optional<BentRim> fit_bent_rim(const Patch& nearest, const SurfaceFit& plane);
 
 }  // namespace lucarne::octree

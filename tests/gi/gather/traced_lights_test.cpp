@@ -1,6 +1,9 @@
+#include "gi/gather/traced_lights.h"
+
 #include <memory>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +63,42 @@ TEST_F(TracedLightsTest, LightsWithASizeAreSoftInOneFrame) {
     scene_.settings.set(kLightSamples, 16);
     for (const std::string_view engine : {"micro", "environment", "paths", "volume"})
         EXPECT_LT(error(engine), 0.002) << engine;
+}
+
+// What probing rays tell takes the place of rays: where a light is seen by all of them nothing changes, and
+// where it is hidden nothing arrives.
+TEST_F(TracedLightsTest, ProbesTellWhatPointsSeeOfALight) {
+    const auto tracer = tracing::SurfelTracer::create(scene_.surfels);
+    ASSERT_TRUE(tracer) << tracer.error().line();
+    const std::vector<Light> lights{scenes::wide_sun({0, 0, -1}, 0.05f, 10)};
+    const SkyDirections no_sky;
+    const TracedLights few(**tracer, lights, no_sky, 2), many(**tracer, lights, no_sky, 16);
+    EXPECT_EQ(few.probed(), 0u) << "two rays are cast at once";
+    ASSERT_EQ(many.probed(), 1u);
+    const auto sight = [&](const SurfacePoint& at) {
+        uint8_t seen = TracedLights::kNoSight;
+        many.probe(at, 1, {&seen, 1});
+        return seen;
+    };
+    const auto on_floor = [](float x, float y) {
+        return SurfacePoint{.position = {x, y, 0}, .normal = kZ, .viewer = kZ, .radius = 0.02f};
+    };
+    const SurfacePoint open = on_floor(0.3f, 0.4f), under = on_floor(1, 1.1f);
+    SurfacePoint below = open;
+    below.normal = below.viewer = -kZ;
+    EXPECT_EQ(sight(open), TracedLights::kSeen);
+    EXPECT_EQ(sight(under), TracedLights::kHidden);
+    EXPECT_EQ(sight(below), TracedLights::kNoSight);
+    const Reflectance grey{glm::vec3(0.6f), 0, 1};
+    const auto reflected = [&](const SurfacePoint& at, std::vector<uint8_t> sights) {
+        return many.reflected(at, grey, 1, sights);
+    };
+    EXPECT_GT(reflected(open, {}).x, 1);
+    EXPECT_EQ(reflected(open, {TracedLights::kSeen}), reflected(open, {}));
+    EXPECT_EQ(reflected(open, {TracedLights::kSeenInPart}), reflected(open, {}));
+    EXPECT_EQ(reflected(open, {TracedLights::kHidden}), glm::vec3(0.0f));
+    EXPECT_EQ(reflected(under, {}), glm::vec3(0.0f));
+    EXPECT_EQ(reflected(under, {TracedLights::kSeen}), reflected(open, {TracedLights::kSeen}));
 }
 
 TEST_F(TracedLightsTest, TheBrightPartOfASkyShinesInOneFrame) {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -314,6 +315,25 @@ TEST(Holes, TheNumberOfSurfelsIsLimited) {
 }
 
 /// The virtual scan of the Cornell box: light that leaves one surface reaches the next.
+/// Pictures of few points leave synthetic surfels out if they are too many, because these have no levels of
+/// detail. So large holes have larger surfels.
+TEST(Holes, LargeHolesHaveFewerSurfelsOfTheSameArea) {
+    const auto discs = [](int count) {
+        return floor_without(12, [count](const glm::vec2& at) {
+            for (int i = 0; i < count; ++i)
+                if (glm::distance(at, glm::vec2(3 + 6 * (i % 2), 3 + 6 * (i / 2))) < 1.7f) return true;
+            return false;
+        });
+    };
+    const auto one = fill_points(discs(1)), four = fill_points(discs(4));
+    const float expected = std::numbers::pi_v<float> * 1.7f * 1.7f;
+    std::printf("%zu and %zu surfels\n", one.size(), four.size());
+    EXPECT_NEAR(filled_area(one), expected, 0.05f * expected);
+    EXPECT_NEAR(filled_area(four), 4 * expected, 0.2f * expected);
+    EXPECT_GT(one.size(), 4u * 2000);
+    EXPECT_LT(four.size(), 2 * one.size()) << "one surfel a cell instead of four";
+}
+
 TEST(Holes, LightOfTheCornellBoxStaysInside) {
     const Scan scan = scan_of("cornell", 200000);
     NormalOptions options;
