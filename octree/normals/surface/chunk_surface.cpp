@@ -226,7 +226,8 @@ class SiteEstimator {
         const float rim = std::numbers::sqrt2_v<float> / 2 * spacing;
         float area = 0;
         std::optional<glm::vec3> outward;
-        if (cell.open()) {
+        const bool open = cell.open();
+        if (open) {
             if (!around.knows(cell.widest_search())) return cell.widest_search();
             const auto view = around.around(std::min(cell.widest_search(), cell.widest_cut()));
             const size_t beyond = cell.cut_open(view.tile, view.centre, static_cast<float>(view.radius));
@@ -236,6 +237,15 @@ class SiteEstimator {
             area = cell.area_at_rim();
         } else {
             outward = cell.outward();
+            area = cell.area();
+        }
+        std::optional<SiteLine> border;
+        if (outward) {
+            if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
+            border = border_at(site, *outward, around, fit, rim);
+        }
+        if (border && side) {
+            cell.cut_at(border->toward, border->distance);
             area = cell.area();
         }
         if (!side && sparser > kThin && fit.roundness < kStrip)
@@ -254,15 +264,16 @@ class SiteEstimator {
         if (side && narrow) area = std::min(area, kMostNarrow * spacing * spacing);
         surface_.areas[site] = area;
         const bool creased = side && side->first.distance > 0;
-        bool at_border = creased && side->first.distance < kOutermost * rim;
-        if (!creased && outward) {
-            if (!around.knows(kBorderLook * rim)) return kBorderLook * rim;
-            at_border = add_border(site, *outward, around, fit, rim);
-        }
+        std::optional<SiteLine> line;
+        if (creased) line = line_at(site, *side, spacing);
+        // The surface of a thin pipe has a border nearby as well as a crease.
+        if (border && !(creased && side->first.distance < border->distance)) line = border;
+        if (line) lines_.push_back(*line);
+        const float end = line ? line->distance : std::numeric_limits<float>::infinity();
+        const bool at_border = end < kOutermost * rim;
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
         if (whole != glm::vec3(0.0f)) {
             sides_.push_back({site, fit.normal, at_border ? side->layered : glm::vec3(0.0f)});
-            if (creased) lines_.push_back(line_at(site, *side, spacing));
         }
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
@@ -367,16 +378,17 @@ class SiteEstimator {
         return radius;
     }
 
-    /// Gives a site the border of its surface, if there is one. `spacing`: of the points if the neighbours
-    /// fill half a disc. Returns whether the site is one of the outermost.
-    bool add_border(uint32_t site, const glm::vec3& outward, ChunkNeighbours::Surroundings& around,
-                    const SurfaceFit& fit, float spacing) {
+    /// Returns the border of a site's surface, if there is one. `spacing`: of the points if the neighbours
+    /// fill half a disc.
+    static std::optional<SiteLine> border_at(uint32_t site, const glm::vec3& outward,
+                                             ChunkNeighbours::Surroundings& around, const SurfaceFit& fit,
+                                             float spacing) {
         const auto view = around.around(kBorderLook * spacing);
         const float level = kRoughLevel * std::sqrt(fit.variance) + kFlatLevel * spacing;
         const Rim rim{tangent_frame(fit.normal), outward, spacing, level};
         const auto border = find_border(view.tile, view.centre, rim);
-        if (border) lines_.push_back({site, fit.normal, border->toward, border->distance, border->beyond});
-        return border && border->distance < kOutermost * spacing;
+        if (!border) return std::nullopt;
+        return SiteLine{site, fit.normal, border->toward, border->distance, border->beyond};
     }
 
     void connect(uint32_t site, const Patch& nearest, const Patch* wide, const glm::vec3& normal) {
