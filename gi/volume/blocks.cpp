@@ -141,7 +141,7 @@ uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell) {
 
 uint64_t blocks_in_box(const glm::vec3& low, const glm::vec3& high) {
     const auto layer = [](float place) {
-        return static_cast<int>(std::clamp(std::floor(place), 0.0f, float{kBlocksAlong - 1}));
+        return static_cast<int>(std::clamp(place, 0.0f, float{kBlocksAlong - 1}));
     };
     uint64_t found = kAllBlocks;
     constexpr uint64_t kRepeated[] = {0x1111111111111111u, 0x0001000100010001u, 1};

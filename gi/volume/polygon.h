@@ -34,12 +34,15 @@ template <class T>
 BasicPolygon<T> cut(const BasicPolygon<T>& polygon, int axis, T sign, T low) {
     // Sutherland & Hodgman 1974, "Reentrant polygon clipping", for one plane.
     BasicPolygon<T> kept;
+    const auto* from = &polygon.corners[0];
+    T before = sign * (*from)[axis] - low;
     for (size_t i = 0; i < polygon.count; ++i) {
-        const auto &from = polygon.corners[i], &to = polygon.corners[(i + 1) % polygon.count];
-        const T before = sign * from[axis] - low, after = sign * to[axis] - low;
-        if (before >= 0) kept.add(from);
-        if ((before >= 0) != (after >= 0)) kept.add(from + (to - from) * (before / (before - after)));
+        const auto& to = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
+        const T after = sign * to[axis] - low;
+        if (before >= 0) kept.add(*from);
+        if ((before >= 0) != (after >= 0)) kept.add(*from + (to - *from) * (before / (before - after)));
         assert(kept.count < BasicPolygon<T>::kMost);
+        from = &to, before = after;
     }
     return kept;
 }
@@ -51,8 +54,19 @@ struct Layers {
     int first, last;  ///< none: the last is below the first
 };
 
-/// Returns which of `most` layers along an axis a polygon touches. Layers count as touched by what is nearer
-/// than `touching`, in voxels.
+/// Returns which of `most` layers along an axis are touched by what reaches from `low` to `high`, or is
+/// nearer than `touching`, in voxels.
+template <class T>
+Layers<T> layers_between(T low, T high, int most, T touching) {
+    // Comparisons as floats: a hostile polygon may lie beyond the range of int. Below zero truncation is no
+    // rounding down, but nothing lies there.
+    const auto end = static_cast<T>(most);
+    const T last = high + touching;
+    return {low, high, static_cast<int>(std::clamp(low - touching, T(0), end)),
+            last < 0 || most == 0 ? -1 : static_cast<int>(std::min(last, end - T(0.5)))};
+}
+
+/// Returns which of `most` layers along an axis a polygon touches.
 template <class T>
 Layers<T> layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touching) {
     T low = polygon.corners[0][axis], high = low;
@@ -60,10 +74,7 @@ Layers<T> layers_of(const BasicPolygon<T>& polygon, int axis, int most, T touchi
         low = std::min(low, polygon.corners[i][axis]);
         high = std::max(high, polygon.corners[i][axis]);
     }
-    // Comparisons as floats: a hostile polygon may lie beyond the range of int.
-    const auto end = static_cast<T>(most);
-    return {low, high, static_cast<int>(std::clamp(std::floor(low - touching), T(0), end)),
-            static_cast<int>(std::clamp(std::floor(high + touching), T(-1), end - 1))};
+    return layers_between(low, high, most, touching);
 }
 
 /// Calls body(cell, part) for every voxel of a grid of this size that a polygon touches, with the part of the

@@ -1,6 +1,7 @@
 #include "gi/volume/voxels.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "gi/shared/surfel_code.h"
 #include "gi/volume/blocks.h"
 #include "gi/volume/disc_areas.h"
+#include "gi/volume/disc_shares.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::volume {
@@ -26,9 +28,14 @@ constexpr size_t kSurfelsAPiece = 16384, kSurfelsAtOnce = 8 * kSurfelsAPiece;
 constexpr size_t kSomeParts = size_t{1} << 22, kPartsASurfel = 8;
 /// Of a disc, in voxels: those of a broken file would touch every voxel of the grid, one after the other.
 constexpr float kLargestRadius = 1024;
-/// Of the octagon about a disc, in its radii (1 / cos 22.5 degrees), and a little more.
-constexpr float kCorners = 1.0825f;
 constexpr size_t kGapsATask = 256;
+
+/// Returns the part of a polygon in a box.
+Polygon clipped(Polygon polygon, const glm::vec3& low, const glm::vec3& high) {
+    for (int axis = 0; axis < 3; ++axis)
+        polygon = cut(cut(polygon, axis, 1.0f, low[axis]), axis, -1.0f, -high[axis]);
+    return polygon;
+}
 
 }  // namespace
 
@@ -105,14 +112,17 @@ void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) {
     const Disc disc{
         place, normal,
         static_cast<uint8_t>(gap_between(radius / grid_.voxel, whole / (grid_.voxel * grid_.voxel)))};
-    // Most discs lie in one voxel as a whole.
-    const glm::vec3 extent =
-        kCorners * radius / grid_.voxel * glm::sqrt(glm::max(1.0f - normal * normal, 0.0f)) + 2 * kTouching;
-    const glm::vec3 low = place - extent, high = place + extent;
-    if (inside && glm::floor(low) == glm::floor(high)) {
-        const glm::ivec3 cell(glm::floor(low));
-        target.push_back({grid_.number(cell), {number, whole}});
-        mark(disc, cell, low, high, [&] { return octagon_about(grid_, middle, normal, radius); });
+    // Most discs lie in a few voxels.
+    std::array<DiscPart, 4> parts;
+    if (const size_t few = inside ? few_parts(place, normal, radius / grid_.voxel, parts) : 0) {
+        for (size_t i = 0; i < few; ++i) {
+            const DiscPart& part = parts[i];
+            target.push_back({grid_.number(part.cell), {number, whole * part.share}});
+            mark(disc, part.cell, part.low, part.high, [&] {
+                return clipped(octagon_about(grid_, middle, normal, radius), glm::vec3(part.cell) - kTouching,
+                               glm::vec3(part.cell + 1) + kTouching);
+            });
+        }
         return;
     }
     const size_t first = target.size();

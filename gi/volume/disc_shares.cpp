@@ -1,0 +1,98 @@
+#include "gi/volume/disc_shares.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
+#include "gi/shared/brdf.h"
+#include "gi/volume/disc_areas.h"
+
+namespace lucarne::gi::volume {
+namespace {
+
+/// What is less of a disc may be rounding.
+constexpr float kLeastShare = 1e-6f;
+
+/// A border that cuts a disc: between cells number - 1 and number along an axis.
+struct Border {
+    int axis = 0, number = 0;
+    float distance = 0;  ///< from the disc's middle in its plane, radii
+    float below = 0;     ///< share of the disc before it
+};
+
+}  // namespace
+
+float disc_share(float distance) {
+    const float d = std::clamp(distance, -1.0f, 1.0f);
+    return 1 - (std::acos(d) - d * std::sqrt(1 - d * d)) / kPi;
+}
+
+float disc_share(float first, float second, float cosine) {
+    const float d1 = std::clamp(first, -1.0f, 1.0f), d2 = std::clamp(second, -1.0f, 1.0f);
+    const float sine2 = std::max(1 - cosine * cosine, 1e-6f);
+    if (d1 * d1 + d2 * d2 - 2 * cosine * d1 * d2 >= sine2) {
+        // The lines do not meet in the disc: each of them lies on one side of the other.
+        const bool first_before = cosine * d1 <= d2, second_before = cosine * d2 <= d1;
+        if (first_before && second_before) return disc_share(d1) + disc_share(d2) - 1;
+        return first_before ? disc_share(d1) : second_before ? disc_share(d2) : 0;
+    }
+    // Green's theorem for the wedge from where the lines meet to their ends a and b on the circle. The first
+    // line is x = d1.
+    const float sine = std::sqrt(sine2), h1 = std::sqrt(1 - d1 * d1), h2 = std::sqrt(1 - d2 * d2);
+    const float px = d1, py = (d2 - cosine * d1) / sine;
+    const float ax = d1, ay = -h1, bx = cosine * d2 - sine * h2, by = sine * d2 + cosine * h2;
+    float arc = std::atan2(bx * ay - by * ax, ax * bx + ay * by);
+    if (arc < 0) arc += 2 * kPi;
+    const float twice = arc - (px * ay - py * ax) - (bx * py - by * px);
+    return std::clamp(twice / (2 * kPi), 0.0f, 1.0f);
+}
+
+size_t few_parts(const glm::vec3& place, const glm::vec3& normal, float radius,
+                 std::array<DiscPart, 4>& parts) {
+    const glm::vec3 across = glm::sqrt(glm::max(1.0f - normal * normal, 0.0f)), reach = radius * across;
+    const glm::vec3 low = place - reach - kTouching, high = place + reach + kTouching;
+    const glm::ivec3 first(low), last(high);
+    std::array<Border, 2> borders;
+    size_t count = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (last[axis] == first[axis]) continue;
+        if (last[axis] - first[axis] > 1 || count == borders.size()) return 0;
+        const float distance =
+            (static_cast<float>(last[axis]) - place[axis]) / std::max(reach[axis], kTouching);
+        borders[count++] = {axis, last[axis], distance, disc_share(distance)};
+    }
+    parts[0] = {first, 1, low, high};
+    if (count == 0) return 1;
+    float both = 0;  // the share before both borders
+    if (count == 2) {
+        const auto& [u, v] = borders;
+        const float size = across[u.axis] * across[v.axis];
+        // Along a normal the disc reaches so little that lines in its plane mean nothing.
+        if (std::min(reach[u.axis], reach[v.axis]) < 4 * kTouching) return 0;
+        both = std::clamp(disc_share(u.distance, v.distance, -normal[u.axis] * normal[v.axis] / size),
+                          std::max(u.below + v.below - 1, 0.0f), std::min(u.below, v.below));
+    }
+    size_t found = 0;
+    for (size_t i = 0; i < size_t{1} << count; ++i) {
+        DiscPart part{first, 1, low, high};
+        for (size_t k = 0; k < count; ++k) {
+            const auto border = static_cast<float>(borders[k].number);
+            const bool upper = (i >> k & 1) != 0;
+            part.cell[borders[k].axis] += upper;
+            (upper ? part.low : part.high)[borders[k].axis] = border;
+        }
+        const float u = borders[0].below, v = borders[1].below;
+        if (count == 1)
+            part.share = i == 0 ? u : 1 - u;
+        else {
+            part.share = i == 0 ? both : i == 1 ? v - both : i == 2 ? u - both : 1 - u - v + both;
+            if (!(part.share > kLeastShare)) continue;
+        }
+        parts[found++] = part;
+    }
+    return found;
+}
+
+}  // namespace lucarne::gi::volume
