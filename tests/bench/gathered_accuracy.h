@@ -32,6 +32,7 @@ namespace lucarne::bench {
 /// Largest errors that a picture should have; 0: no target.
 struct ErrorTargets {
     double energy = 0, rel_mse = 0;
+    double trimmed = 0;  ///< of the relMSE without the worst .1 % of the pixels
 };
 
 /// How a picture differs from the reference in the pixels that show a point: others would hide errors in open
@@ -40,6 +41,7 @@ struct PictureErrors {
     double energy = 0;          ///< of the mean luminance
     double rel_mse = 0;         ///< free of the reference's noise
     double standard_error = 0;  ///< of rel_mse
+    double trimmed = 0;         ///< relMSE without the worst .1 % of the pixels; counts the reference's noise
     double off_edges = 0;       ///< rel_mse without edges of depth and normal
     double flip = 0;            ///< mean; counts the reference's noise
 };
@@ -62,6 +64,7 @@ class Judge {
         PictureErrors errors{.energy = metrics.luminance_error,
                              .rel_mse = all.rel_mse,
                              .standard_error = all.standard_error,
+                             .trimmed = metrics.rel_mse_trimmed,
                              .off_edges = std::numeric_limits<double>::quiet_NaN()};
         if (std::ranges::find(inner_, 1) != inner_.end()) {
             LUCARNE_ASSIGN(const auto inner, gi::compare_with_halves(own, first, second, inner_));
@@ -106,10 +109,12 @@ inline std::string target_text(double value, double target, double scale) {
 inline void print_errors(const std::string& what, const std::string& engine, const PictureErrors& errors,
                          const ErrorTargets& targets, const Stage::Picture& picture) {
     fmt::print(
-        "{:<38} {:<13} {:>+7.2f} {:<14} {:>8.2g} {:>8.1g} {:<16} {:>8.2g} {:>6.3f} {:>7.2f} {:>7.2f}\n", what,
-        engine, 100 * errors.energy, target_text(errors.energy, targets.energy, 100), errors.rel_mse,
-        errors.standard_error, target_text(errors.rel_mse, targets.rel_mse, 1), errors.off_edges, errors.flip,
-        picture.seconds, picture.cpu_seconds);
+        "{:<38} {:<13} {:>+7.2f} {:<14} {:>8.2g} {:>8.1g} {:<16} {:>8.2g} {:<14} {:>8.2g} {:>6.3f} {:>7.2f} "
+        "{:>7.2f}\n",
+        what, engine, 100 * errors.energy, target_text(errors.energy, targets.energy, 100), errors.rel_mse,
+        errors.standard_error, target_text(errors.rel_mse, targets.rel_mse, 1), errors.trimmed,
+        target_text(errors.trimmed, targets.trimmed, 1), errors.off_edges, errors.flip, picture.seconds,
+        picture.cpu_seconds);
     std::fflush(stdout);
 }
 
@@ -118,8 +123,9 @@ class AccuracyTable {
  public:
     AccuracyTable(gi::Device& device, const BenchRun& run, std::string engine)
         : device_(device), run_(run), engine_(std::move(engine)) {
-        fmt::print("{:<38} {:<13} {:>8} {:<13} {:>9} {:>8} {:<16} {:>8} {:>6} {:>7} {:>7}\n", "picture",
-                   "engine", "energy %", "", "relMSE", "+-", "", "no edges", "FLIP", "s", "CPU-s");
+        fmt::print("{:<38} {:<13} {:>8} {:<13} {:>9} {:>8} {:<16} {:>8} {:<14} {:>8} {:>6} {:>7} {:>7}\n",
+                   "picture", "engine", "energy %", "", "relMSE", "+-", "", "trimmed", "", "no edges", "FLIP",
+                   "s", "CPU-s");
     }
 
     struct Row {

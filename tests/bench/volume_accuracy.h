@@ -33,14 +33,14 @@ inline Result<void> accuracy_of_volume(gi::Device& device, const BenchRun& run) 
         LUCARNE_TRY(table.row(stage, {.name = fmt::format("cornell, scan, bounce {}", bounce),
                                       .only_bounce = bounce,
                                       .frames = {1, 16},
-                                      .targets = {{.05, .05}, {.05, .05}}}));
+                                      .targets = {{.05, 0, .05}, {.05, 0, .05}}}));
     }
     LUCARNE_ASSIGN(const Scan nave, Scan::create("nave", run.points(300'000), run.folder));
     for (const std::string& camera : run.cases<std::string>({"nave", "carpet", "aisle", "altar", "vault"})) {
         Stage stage(device, nave);
         LUCARNE_TRY(stage.open(table.view(scene_file("nave"), camera)));
         LUCARNE_TRY(
-            table.row(stage, {.name = "nave, " + camera + ", bounces 0 to 3", .targets = {{.1, .15}}}));
+            table.row(stage, {.name = "nave, " + camera + ", bounces 0 to 3", .targets = {{.1, 0, .15}}}));
     }
     return {};
 }
