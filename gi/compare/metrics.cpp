@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include <fmt/format.h>
@@ -117,10 +118,12 @@ Result<HalvesError> compare_with_halves(Pixels picture, Pixels first, Pixels sec
     for (size_t i = 0; i < mean.size(); ++i) mean[i] = 0.5f * (first[i] + second[i]);
     const double epsilon = relative_epsilon(mean);
     double sum = 0, squares = 0, noise = 0, count = 0;
+    std::vector<double> products;
     for_each(picture.size(), mask, [&](size_t i) {
         const glm::dvec3 a(picture[i]), r1(first[i]), r2(second[i]), r(mean[i]);
         const glm::dvec3 scale = 1.0 / (r * r + epsilon), half = 0.5 * (r1 - r2);
         const double product = mean_of_channels((a - r1) * (a - r2) * scale);
+        products.push_back(product);
         sum += product;
         squares += product * product;
         noise += mean_of_channels(half * half * scale);
@@ -130,6 +133,10 @@ Result<HalvesError> compare_with_halves(Pixels picture, Pixels first, Pixels sec
     error.rel_mse = sum / count;
     error.standard_error = std::sqrt(std::max(0.0, squares / count - error.rel_mse * error.rel_mse) / count);
     error.reference_rel_mse = noise / count;
+    const auto worst = products.end() - static_cast<ptrdiff_t>(kTrimmed * count);
+    if (worst != products.end()) std::nth_element(products.begin(), worst, products.end());
+    error.rel_mse_trimmed =
+        std::accumulate(products.begin(), worst, 0.0) / static_cast<double>(worst - products.begin());
     return error;
 }
 

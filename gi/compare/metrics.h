@@ -40,6 +40,7 @@ struct HalvesError {
     /// About 6 N^2 of it remain through the denominator, where N is reference_rel_mse. May be negative if
     /// the noise is larger.
     double rel_mse = 0;
+    double rel_mse_trimmed = 0;    ///< the same without the worst share kTrimmed of the pixels
     double standard_error = 0;     ///< of rel_mse, from its spread over the pixels
     double reference_rel_mse = 0;  ///< of r itself: mean of ((r1 - r2) / 2)^2 / (r^2 + .01 m^2)
 };

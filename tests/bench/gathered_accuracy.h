@@ -41,7 +41,7 @@ struct PictureErrors {
     double energy = 0;          ///< of the mean luminance
     double rel_mse = 0;         ///< free of the reference's noise
     double standard_error = 0;  ///< of rel_mse
-    double trimmed = 0;         ///< relMSE without the worst .1 % of the pixels; counts the reference's noise
+    double trimmed = 0;         ///< rel_mse without the worst .1 % of the pixels
     double off_edges = 0;       ///< rel_mse without edges of depth and normal
     double flip = 0;            ///< mean; counts the reference's noise
 };
@@ -64,7 +64,7 @@ class Judge {
         PictureErrors errors{.energy = metrics.luminance_error,
                              .rel_mse = all.rel_mse,
                              .standard_error = all.standard_error,
-                             .trimmed = metrics.rel_mse_trimmed,
+                             .trimmed = all.rel_mse_trimmed,
                              .off_edges = std::numeric_limits<double>::quiet_NaN()};
         if (std::ranges::find(inner_, 1) != inner_.end()) {
             LUCARNE_ASSIGN(const auto inner, gi::compare_with_halves(own, first, second, inner_));

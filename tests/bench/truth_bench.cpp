@@ -18,6 +18,7 @@
 #include "gi/post/tone_map.h"
 #include "tests/bench/all_surfels.h"
 #include "tests/bench/bench_run.h"
+#include "tests/bench/outlines.h"
 #include "tests/bench/scan.h"
 #include "tests/bench/true_surface.h"
 
@@ -30,6 +31,7 @@ using Pixels = std::vector<glm::vec4>;
 constexpr uint64_t kSamples = 256;        ///< paths a pixel of whole pictures, without --samples
 constexpr uint64_t kBounceSamples = 32;   ///< of single bounces, whose means alone are compared
 constexpr size_t kFittedDiscs = 100'000;  ///< discs whose rims and creases are probed
+constexpr uint32_t kOutlineSide = 2880;   ///< pixels, of the picture in which outlines are measured
 constexpr double kRogueMetres = .05, kRogueRadii = 3, kNoise = .01;  ///< m off the surface
 
 void row(const std::string& what, const std::string& measure, double value, const std::string& unit,
@@ -149,9 +151,7 @@ Result<void> judge(const std::string& what, const Scan::Truth& picture, const Pi
 }
 
 /// Measures how the scan's discs lie on the surface.
-Result<void> discs(const Case& measured, const Scan& scan, const io::SceneGeometry& geometry) {
-    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
-    LUCARNE_ASSIGN(const auto surfels, bench::all_surfels(*device, scan.cache()));
+void discs(const Case& measured, const std::vector<gi::Surfel>& surfels, const io::SceneGeometry& geometry) {
     const bench::NearestSurface surface(geometry);
     std::vector<char> rogue(surfels.size());
     parallel_ranges(surfels.size(), 4096, [&](size_t first, size_t last) {
@@ -192,13 +192,43 @@ Result<void> discs(const Case& measured, const Scan& scan, const io::SceneGeomet
     row(what, "normals elsewhere, p50", percentile(elsewhere, .5), "deg");
     row(what, "normals elsewhere, p95", percentile(elsewhere, .95), "deg");
     row(what, "normals, p95", percentile(angles, .95), "deg", 12);
+}
+
+/// Measures how much of the outlines lies where it should, in a larger picture.
+Result<void> outlines(const BenchRun& run, const std::string& what, const Scan& scan, const TrueScene& truth,
+                      const bench::SpacingMap& spacings) {
+    const uint32_t side = run.trial() ? kOutlineSide / 4 : kOutlineSide;
+    const std::string gbuffer = run.folder / "outlines.exr";
+    LUCARNE_TRY(scan.render("outlines-unlit.exr",
+                            fmt::format("--engine unlit --camera {} --size {}x{} --preset high --gbuffer {}",
+                                        truth.view, side, side, gbuffer)));
+    LUCARNE_ASSIGN(const io::Image seen, io::read_exr(gbuffer));
+    const TrueView view(*truth.geometry, truth.camera, {side, side}, 0);
+    const gi::CameraView camera = gi::camera_view(truth.camera, {side, side}, {});
+    const double pixel_size = 2 * glm::length(glm::dvec3(camera.up)) / side;
+    const auto spacing = [&](size_t pixel) {
+        const double depth = view.pixels()[pixel].depth;
+        const glm::dvec3 place = glm::dvec3(camera.origin) + view.ray(pixel) * depth;
+        return depth > 0 ? spacings.at(place) / (pixel_size * depth) : 0;
+    };
+    const bench::Outlines found =
+        bench::OutlineJudge(view.pixels(), seen.pixels, side, pixel_size, spacing).judge();
+    const auto print = [&](const std::string& measure, const bench::OutlineLength& length, double target) {
+        if (!(length.all > 0)) return;
+        const double share = 100 * length.kept / length.all;
+        fmt::print("{:<32} {:<36} {:>9.4g} %    target {:>5.3g}  {} ({:.0f} pixels long)\n", what, measure,
+                   share, target, share >= target ? "kept" : "MISSED", length.all);
+    };
+    print("creases within 1/4 spacing", found.creases, 90);
+    print("steps of depth within 1/2 spacing", found.steps, 80);
     return {};
 }
 
-Result<void> pictures(const BenchRun& run, const Case& measured, const Scan& scan,
-                      const std::string& camera) {
+Result<void> pictures(const BenchRun& run, const Case& measured, const Scan& scan, const std::string& camera,
+                      const bench::SpacingMap& spacings) {
     LUCARNE_ASSIGN(const TrueScene truth, TrueScene::open(measured.scene, camera));
     const std::string what = measured.name + (measured.views.size() > 1 ? ", " + camera : "");
+    LUCARNE_TRY(outlines(run, what, scan, truth, spacings));
     const std::string common = fmt::format("--camera {} --size {}x{} --preset {} ", camera, bench::kTrueSide,
                                            bench::kTrueSide, run.trial() ? "preview" : "high");
     for (const int bounce : run.cases(measured.bounces)) {
@@ -234,9 +264,15 @@ Result<void> measure(const BenchRun& run) {
         LUCARNE_ASSIGN(const Scan scan, Scan::create(measured.scene, run.points(measured.points), run.folder,
                                                      measured.sampling));
         LUCARNE_ASSIGN(const auto geometry, io::SceneGeometry::create(measured.scene));
-        LUCARNE_TRY(discs(measured, scan, *geometry));
+        std::vector<gi::Surfel> surfels;
+        {
+            LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+            LUCARNE_ASSIGN(surfels, bench::all_surfels(*device, scan.cache()));
+        }
+        discs(measured, surfels, *geometry);
+        const bench::SpacingMap spacings(surfels);
         for (const std::string& camera : run.cases(measured.views))
-            LUCARNE_TRY(pictures(run, measured, scan, camera));
+            LUCARNE_TRY(pictures(run, measured, scan, camera, spacings));
     }
     return {};
 }

@@ -139,6 +139,7 @@ json to_json(const Figures& f) {
                 {"flip", f.flip}};
     if (f.halves)
         out["halves"] = {{"rel_mse", f.halves->rel_mse},
+                         {"rel_mse_trimmed", f.halves->rel_mse_trimmed},
                          {"standard_error", f.halves->standard_error},
                          {"reference_rel_mse", f.halves->reference_rel_mse}};
     return out;

@@ -92,6 +92,17 @@ TEST(Metrics, HalvesOfASmallReferenceGiveTheFiguresWorkedOutByHand) {
     EXPECT_NEAR(error->reference_rel_mse, 0.5 / 4.0225, 1e-9);
 }
 
+TEST(Metrics, TrimmedHalvesLeaveOutTheWorstPixels) {
+    std::vector<glm::vec4> picture(2000, glm::vec4(1.1f)), reference(2000, glm::vec4(1.0f));
+    picture[7] = picture[1234] = glm::vec4(100);
+    const auto error = compare_with_halves(picture, reference, reference);
+    ASSERT_TRUE(error);
+    EXPECT_GT(error->rel_mse, 9);
+    EXPECT_NEAR(error->rel_mse_trimmed, .01 / 1.01, 1e-5);
+    picture[99] = glm::vec4(100);  // more than one in a thousand
+    EXPECT_GT(compare_with_halves(picture, reference, reference)->rel_mse_trimmed, 4);
+}
+
 TEST(Metrics, TwoHalvesFreeTheErrorFromTheReferencesNoise) {
     constexpr double kNoise = 0.05, kError = 0.03;
     Random random(5);
