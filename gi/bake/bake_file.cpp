@@ -151,6 +151,11 @@ Result<BakeHeader> read_bake_header(const ByteSource& file) {
     return header_of(list.first);
 }
 
+Result<BakeHeader> read_bake_header(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(const auto file, InputFile::open_shared(path));
+    return read_bake_header(*file);
+}
+
 std::filesystem::path bake_beside(const std::filesystem::path& cache, std::string_view engine) {
     return fmt::format("{}.{}.bake", cache.string(), engine);
 }

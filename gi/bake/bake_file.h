@@ -35,6 +35,7 @@ Result<void> write_bake(const std::filesystem::path& path, const BakeFile& bake)
 /// `most_bytes` when unpacked.
 Result<BakeFile> read_bake(const ByteSource& file, uint64_t most_bytes);
 Result<BakeHeader> read_bake_header(const ByteSource& file);
+Result<BakeHeader> read_bake_header(const std::filesystem::path& path);
 
 /// Returns the name of an engine's bake beside its cache: "scan.luc.paths.bake" for "scan.luc".
 std::filesystem::path bake_beside(const std::filesystem::path& cache, std::string_view engine);

@@ -114,8 +114,7 @@ Result<void> BakeJob::keep(const Precomputation& work, uint64_t key) {
     if (share < 1) {
         std::error_code unknown;
         if (std::filesystem::exists(order_.file, unknown)) {
-            const auto file = InputFile::open_shared(order_.file);
-            const auto kept = file ? read_bake_header(**file) : tl::make_unexpected(file.error());
+            const auto kept = read_bake_header(order_.file);
             if (kept && kept->share >= 1 && kept->key != key) return {};
         }
     }

@@ -8,7 +8,6 @@
 
 #include "gi/bake/bake_file.h"
 #include "gi/scene/views.h"
-#include "io/files/file.h"
 #include "octree/stream/cut.h"
 
 namespace lucarne::viewer {
@@ -23,8 +22,7 @@ std::filesystem::path kept_bake(const gi::EngineInfo& engine, const octree::Node
          {gi::bake_place(identity->file, engine.name), gi::bake_beside(identity->file, engine.name)}) {
         if (place.empty() || !std::filesystem::exists(place, unknown)) continue;
         if (std::filesystem::last_write_time(place, unknown) < written) continue;
-        const auto file = InputFile::open_shared(place);
-        const auto header = file ? gi::read_bake_header(**file) : tl::make_unexpected(file.error());
+        const auto header = gi::read_bake_header(place);
         if (header && header->engine == engine.name && header->version == engine.precomputes->version &&
             header->share >= 1)
             return place;
@@ -51,13 +49,14 @@ EngineBake::Inputs EngineBake::inputs_of(const BakeSubject& subject) {
     return inputs;
 }
 
+void EngineBake::end() {
+    if (!job_) return;
+    job_.reset();
+    published_({});
+}
+
 void EngineBake::update(const BakeSubject& subject) {
-    if (!subject.engine.precomputes) {
-        if (!job_) return;
-        job_.reset();
-        published_({});
-        return;
-    }
+    if (!subject.engine.precomputes) return end();
     Inputs inputs = inputs_of(subject);
     const bool asked_again = std::exchange(again_, subject.again) != subject.again;
     if (job_ && inputs == inputs_ && !(asked_again && !job_->status().error)) return;

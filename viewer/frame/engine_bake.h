@@ -45,6 +45,8 @@ class EngineBake {
     /// Starts what the engine precomputes, unless that runs or has ended. One that has failed is started
     /// again when it is asked for `again`. An engine that precomputes nothing ends what runs.
     void update(const BakeSubject& subject);
+    /// Ends what runs. It tells no news any more.
+    void end();
     /// Waits until it has ended or `stop` is true. Errors: it failed.
     Result<void> wait(const std::atomic<bool>* stop, Progress* progress) const;
 

@@ -127,6 +127,7 @@ struct Pipeline::State {
 };
 
 Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSource> from) {
+    if (from != source) bake.end();  // its news would be taken for those of the other source
     LUCARNE_TRY(surfels.set_source(from, scene));
     source = std::move(from);
     bounds = octree::robust_bounds(*source);

@@ -35,6 +35,8 @@ struct Preparation {
     std::string engine_before;          ///< that drew pictures then; empty: the prepared one did already
     std::filesystem::path place, file;  ///< where it would be kept; where it is kept; empty: nowhere
     uint64_t file_bytes = 0;
+    bool kept_read = false;                                      ///< whether `kept_share` is known
+    std::optional<double> kept_share;                            ///< of the file at `place`; none: no file
     bool whole = false;                                          ///< the newest picture had all of it
     std::string problem;                                         ///< why it has failed, or is not kept
     std::optional<std::chrono::steady_clock::time_point> begun;  ///< when work on it was first seen

@@ -16,7 +16,6 @@
 #include "gi/registry.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
-#include "io/files/file.h"
 #include "viewer/opening/moods.h"
 
 namespace lucarne::viewer {
@@ -54,13 +53,18 @@ gi::BakeCost cost_of(const Lighting& model) {
     return (*entry)->info.precomputes->cost(method.settings, surfels);
 }
 
-/// Returns the share that a kept file holds; none without one.
-std::optional<double> kept_share(const std::filesystem::path& path) {
-    std::error_code unknown;
-    if (path.empty() || !std::filesystem::exists(path, unknown)) return std::nullopt;
-    const auto file = InputFile::open_shared(path);
-    const auto header = file ? gi::read_bake_header(**file) : tl::make_unexpected(file.error());
-    return header ? std::optional(header->share) : std::nullopt;
+/// Returns the share that the kept file holds; none without one. It is read once for each news of the work:
+/// frames ask for it.
+std::optional<double> kept_share(const Lighting& model) {
+    Preparation& preparation = model.lights.preparation;
+    const std::filesystem::path& path = preparation.place;
+    if (path.empty()) return std::nullopt;
+    if (!preparation.kept_read) {
+        const auto header = gi::read_bake_header(path);
+        preparation.kept_share = header ? std::optional(header->share) : std::nullopt;
+        preparation.kept_read = true;
+    }
+    return preparation.kept_share;
 }
 
 /// Ends what is not finished. Pictures are by the engine that drew before, or by that of an unprepared view.
@@ -152,6 +156,7 @@ void prepare(const Lighting& model) {
     Preparation& preparation = model.lights.preparation;
     preparation.wanted = true;
     preparation.problem.clear();
+    preparation.kept_read = false;
     ++preparation.asked;
     preparation.begun.reset();
     std::string& engine = model.view.method.engine;
@@ -163,7 +168,8 @@ void prepare(const Lighting& model) {
 
 void stop_preparing(const Lighting& model) {
     if (!is_preparing(model)) return;
-    const bool is_there = kept_share(model.lights.preparation.place).value_or(1) < 1;
+    model.lights.preparation.kept_read = false;
+    const bool is_there = kept_share(model).value_or(1) < 1;
     const std::string kept = is_there ? what_stopping_keeps(model) : "";
     model.view.message = fmt::format("Stopped at {:.0f} %{}{}", std::floor(100 * prepared_share(model.view)),
                                      kept.empty() ? "" : ". ", kept);
@@ -175,14 +181,15 @@ std::string what_stopping_keeps(const Lighting& model) {
     if (model.view.preparing.ended && prepared_share(model.view) >= 1)
         return "It is finished, and is shown by the next picture";
     if (place.empty()) return "Nothing is kept: there is no place for a file";
-    if (kept_share(place).value_or(0) >= 1)
+    if (kept_share(model).value_or(0) >= 1)
         return "Nothing is kept: the file holds a finished preparation for another scan or other options";
     return "Gathering points that are done are kept, and it continues from them";
 }
 
 void take_progress(const Lighting& model, BakeProgress progress) {
-    model.view.preparing = std::move(progress);
     Preparation& preparation = model.lights.preparation;
+    if (progress.share != model.view.preparing.share) preparation.kept_read = false;
+    model.view.preparing = std::move(progress);
     const double share = prepared_share(model.view);
     // What is restored from a file was not done since.
     if (!preparation.wanted || share <= 0 || share < preparation.share_at_begin) preparation.begun.reset();

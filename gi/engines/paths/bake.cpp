@@ -45,6 +45,8 @@ class PathsPrecomputation final : public Precomputation {
         if (sections.contains("rays")) {
             LUCARNE_ASSIGN(LightPaths paths, read_paths(sections, input.settings[kGatherRays]));
             LUCARNE_TRY(make_bake(input, std::move(paths)));
+            while (sharing_->advance()) continue;
+            about_ = sharing_->take();
             publish();
             finished_ = true;
             return {};
@@ -110,17 +112,22 @@ class PathsPrecomputation final : public Precomputation {
                              }});
         };
         add("gathering points", [this] { return builder_->choose_points(); });
-        add("groups", [this] { return builder_->make_groups(), false; });
-        add("larger groups", [this] { return builder_->join_groups(), false; });
+        add("groups", [this] { return builder_->make_groups(); });
+        add("larger groups", [this] { return builder_->join_groups(); });
         add("links", [this] { return builder_->make_links(); });
-        add("entry points", [this] { return builder_->make_entries(), false; });
+        add("entry points", [this] { return builder_->make_entries(); });
         add("photon paths", [this] { return builder_->make_photons(); });
-        steps.push_back({"neighbours", [this, coarse](const BakeInput& input) -> Result<StepResult> {
+        steps.push_back({"snapshot", [this, coarse](const BakeInput& input) -> Result<StepResult> {
                              if (coarse && !is_coarse_) return StepResult::skipped;
                              LUCARNE_TRY(make_bake(input, builder_->take()));
-                             hidden_.emplace(*next_, about_, surfaces_->tracer());
                              return StepResult::done;
                          }});
+        add("neighbours", [this] {
+            if (sharing_->advance()) return true;
+            about_ = sharing_->take();
+            hidden_.emplace(*next_, about_, surfaces_->tracer());
+            return false;
+        });
         add("hidden neighbours", [this] { return hidden_->advance(); });
     }
     Result<void> start(const BakeInput& input) {
@@ -174,14 +181,15 @@ class PathsPrecomputation final : public Precomputation {
         bake->far = PointCells(paths.points, kFarReach);
         bake->paths = std::move(paths);
         bake->seed = input.settings[kSeed];
-        about_ = find_sharing(*bake);
         next_ = std::move(bake);
+        sharing_.emplace(*next_);
         return {};
     }
     /// Publishes the next snapshot: points share light with those they see.
     void publish() {
         if (hidden_) next_->paths.hidden = hidden_->take();
         hidden_.reset();
+        sharing_.reset();
         next_->sharing = without(std::exchange(about_, {}), next_->paths.hidden);
         bake_ = std::exchange(next_, nullptr);
     }
@@ -193,7 +201,8 @@ class PathsPrecomputation final : public Precomputation {
     bool is_coarse_ = false;                       ///< coarse paths are being made
     bool finished_ = false;
     std::shared_ptr<PathsBake> next_;  ///< the next snapshot
-    Sharing about_;                    ///< what its points would share if nothing hid them from each other
+    std::optional<SharingFinder> sharing_;
+    Sharing about_;  ///< what its points would share if nothing hid them from each other
     std::optional<HiddenFinder> hidden_;
     std::shared_ptr<const PathsBake> bake_;
 };

@@ -29,6 +29,9 @@ constexpr float kFarther = 0.01f;  ///< by this share rays go beyond the point w
 /// Fewer leaves than this that see each other see nothing else: the inside of walls, and foliage. They are
 /// not joined.
 constexpr uint32_t kFewestOfAir = 16;
+/// Surfels of cells that are divided, and pairs of groups that are tested, between two looks at whether to
+/// stop.
+constexpr size_t kDividedAtOnce = 65536, kJoinedAtOnce = 16384;
 constexpr float kLeastWeight = 1e-12f;  ///< m^2, of surfels without an area
 
 /// Returns the root of a number's tree, and shortens the way to it.
@@ -67,51 +70,68 @@ GroupBuilder::GroupBuilder(const Surfaces& surfaces, std::span<const RayHit> hit
                          i});
     }
     octree::sort_by_code(codes, 3 * kLevels);
-    for (const octree::CodeIndex& code : codes) order_.push_back(code.index);
+    for (const octree::CodeIndex& code : codes) {
+        order_.push_back(code.index);
+        codes_.push_back(code.code);
+    }
     is_met_.assign(surfaces.parts().size(), false);
     for (const RayHit& hit : hits)
         if (hit.side != kNone && surfaces.is_part(hit.side)) is_met_[hit.side / 2 - surfaces.discs()] = true;
-    // The level whose cells fit into the narrowest ray that ends on each surfel.
-    std::vector<uint8_t> wanted(surfels.size(), 0);
+    find_wanted(hits, least_cell);
+    if (!surfels.empty()) levels_.push_back({{.first = 0, .last = order_.size()}});
+}
+
+/// Finds the level whose cells fit into the narrowest ray that ends on each surfel.
+void GroupBuilder::find_wanted(std::span<const RayHit> hits, float least_cell) {
+    wanted_.assign(surfels_.size(), 0);
     for (const RayHit& hit : hits) {
         if (hit.side == kNone) continue;
         const double narrowest = std::max({kFit * hit.width, least_cell, 1e-9f});
-        const double level = std::ceil(std::log2(edge / narrowest));
-        uint8_t& most = wanted[hit.side / 2];
+        const double level = std::ceil(std::log2(double{edge_} / narrowest));
+        uint8_t& most = wanted_[hit.side / 2];
         most = std::max(most, static_cast<uint8_t>(std::clamp<double>(level, 0, kLevels)));
     }
-    if (surfels.empty()) return;
-    levels_.push_back({{.first = 0, .last = order_.size()}});
-    for (uint32_t level = 0; level < levels_.size(); ++level) {
-        std::vector<Cell> finer;
-        for (Cell& cell : levels_[level]) {
-            bool divides = level < kLevels && cell.last - cell.first > kFewestInCell;
-            if (divides) {
-                divides = false;
-                for (size_t i = cell.first; i < cell.last && !divides; ++i)
-                    divides = wanted[order_[i]] > level;
-            }
-            if (!divides) {
-                make_leaves(cell);
-                continue;
-            }
-            const uint32_t shift = 3 * (kLevels - 1 - level);
-            cell.first_part = static_cast<uint32_t>(finer.size());
-            for (size_t first = cell.first; first < cell.last;) {
-                const uint64_t octant = codes[first].code >> shift;
-                size_t last = first + 1;
-                while (last < cell.last && codes[last].code >> shift == octant) ++last;
-                finer.push_back({.first = first, .last = last});
-                first = last;
-            }
-            cell.last_part = static_cast<uint32_t>(finer.size());
+}
+
+/// Whether a cell of the level that is being divided has parts.
+bool GroupBuilder::is_divided(const Cell& cell) const {
+    if (level_ >= kLevels || cell.last - cell.first <= kFewestInCell) return false;
+    return std::any_of(order_.begin() + static_cast<std::ptrdiff_t>(cell.first),
+                       order_.begin() + static_cast<std::ptrdiff_t>(cell.last),
+                       [&](uint32_t surfel) { return wanted_[surfel] > level_; });
+}
+
+bool GroupBuilder::divide() {
+    for (size_t done = 0; level_ < levels_.size() && done < kDividedAtOnce;) {
+        if (cell_ == levels_[level_].size()) {
+            if (!finer_.empty()) levels_.push_back(std::exchange(finer_, {}));
+            ++level_;
+            cell_ = 0;
+            continue;
         }
-        if (!finer.empty()) levels_.push_back(std::move(finer));
+        Cell& cell = levels_[level_][cell_++];
+        done += cell.last - cell.first;
+        if (!is_divided(cell)) {
+            make_leaves(cell);
+            continue;
+        }
+        const auto shift = static_cast<uint32_t>(3 * (kLevels - 1 - level_));
+        cell.first_part = static_cast<uint32_t>(finer_.size());
+        for (size_t first = cell.first; first < cell.last;) {
+            const uint64_t octant = codes_[first] >> shift;
+            size_t last = first + 1;
+            while (last < cell.last && codes_[last] >> shift == octant) ++last;
+            finer_.push_back({.first = first, .last = last});
+            first = last;
+        }
+        cell.last_part = static_cast<uint32_t>(finer_.size());
     }
+    if (level_ < levels_.size()) return true;
     for (size_t i = 0; i < is_met_.size(); ++i)
-        if (!is_met_[i]) leaf_of_[2 * (surfaces.discs() + i)] = leaf_of_[surfaces.parts()[i].side];
+        if (!is_met_[i]) leaf_of_[2 * (surfaces_.discs() + i)] = leaf_of_[surfaces_.parts()[i].side];
     airs_.resize(facts_.size());
     std::iota(airs_.begin(), airs_.end(), 0u);
+    return false;
 }
 
 /// Whether a side is in the leaves. Of the parts of discs most are inside of walls, where nothing meets them.
@@ -249,60 +269,80 @@ bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) const {
            !surfaces_.tracer().occluded(to, over + kFarther * (over - to));
 }
 
-Groups GroupBuilder::join() const {
-    Groups groups{.leaves = leaves(), .leaf_of = leaf_of_, .first = {0}};
-    std::vector<Facts> facts = facts_;
+void GroupBuilder::begin_joining() {
+    joining_.emplace();
+    joining_->groups = {.leaves = leaves(), .leaf_of = leaf_of_, .first = {0}};
+    joining_->facts = facts_;
     const std::vector<uint32_t> airs = find_airs();
-    for (uint32_t i = 0; i < leaves(); ++i) facts[i].air = airs[i];
-    groups.parent.assign(leaves(), kNone);
-    groups.cell.resize(leaves());
-    std::vector<std::vector<uint32_t>> finer;  // of each cell of the next level: its groups
-    for (size_t level = levels_.size(); level-- > 0;) {
-        const float edge = std::ldexp(edge_, -static_cast<int>(level));
-        std::vector<std::vector<uint32_t>> found(levels_[level].size());
-        for (size_t c = 0; c < levels_[level].size(); ++c) {
-            const Cell& cell = levels_[level][c];
-            for (uint32_t leaf = cell.first_leaf; leaf < cell.last_leaf; ++leaf) {
-                groups.cell[leaf] = edge;
-                found[c].push_back(leaf);
-            }
-            std::vector<uint32_t> parts;
-            for (uint32_t part = cell.first_part; part < cell.last_part; ++part)
-                for (const uint32_t group : finer[part])
-                    if (facts[group].air != kNone) parts.push_back(group);
-            if (parts.size() > kMostParts) parts.clear();
-            std::vector<uint32_t> next(parts.size());
-            std::iota(next.begin(), next.end(), 0u);
-            for (uint32_t i = 0; i < parts.size(); ++i)
-                for (uint32_t j = i + 1; j < parts.size(); ++j)
-                    if (on_one_surface(facts[parts[i]], facts[parts[j]])) {
-                        const uint32_t a = root_of(next, i), b = root_of(next, j);
-                        next[std::max(a, b)] = std::min(a, b);
-                    }
-            for (uint32_t i = 0; i < parts.size(); ++i) {
-                if (root_of(next, i) != i) continue;
-                const auto number = groups.count();
-                Facts joined = facts[parts[i]];
-                groups.parent[parts[i]] = number;
-                groups.children.push_back(parts[i]);
-                for (uint32_t j = i + 1; j < parts.size(); ++j) {
-                    if (root_of(next, j) != i) continue;
-                    add(joined, facts[parts[j]]);
-                    groups.parent[parts[j]] = number;
-                    groups.children.push_back(parts[j]);
-                }
-                groups.first.push_back(static_cast<uint32_t>(groups.children.size()));
-                groups.parent.push_back(kNone);
-                groups.cell.push_back(edge);
-                facts.push_back(joined);
-                found[c].push_back(number);
-            }
-        }
-        groups.level_ends.push_back(groups.count());
-        finer = std::move(found);
+    for (uint32_t i = 0; i < leaves(); ++i) joining_->facts[i].air = airs[i];
+    joining_->groups.parent.assign(leaves(), kNone);
+    joining_->groups.cell.resize(leaves());
+    joining_->level = levels_.size();
+}
+
+/// Joins what a cell holds: its leaves, or the groups of its parts. Sets `found` to them, and returns how
+/// many pairs were tested.
+size_t GroupBuilder::join_cell(const Cell& cell, float edge, std::vector<uint32_t>& found) {
+    Groups& groups = joining_->groups;
+    std::vector<Facts>& facts = joining_->facts;
+    for (uint32_t leaf = cell.first_leaf; leaf < cell.last_leaf; ++leaf) {
+        groups.cell[leaf] = edge;
+        found.push_back(leaf);
     }
-    for (const Facts& f : facts) groups.area.push_back(f.area);
-    return groups;
+    std::vector<uint32_t> parts;
+    for (uint32_t part = cell.first_part; part < cell.last_part; ++part)
+        for (const uint32_t group : joining_->finer[part])
+            if (facts[group].air != kNone) parts.push_back(group);
+    if (parts.size() > kMostParts) parts.clear();
+    std::vector<uint32_t> next(parts.size());
+    std::iota(next.begin(), next.end(), 0u);
+    for (uint32_t i = 0; i < parts.size(); ++i)
+        for (uint32_t j = i + 1; j < parts.size(); ++j)
+            if (on_one_surface(facts[parts[i]], facts[parts[j]])) {
+                const uint32_t a = root_of(next, i), b = root_of(next, j);
+                next[std::max(a, b)] = std::min(a, b);
+            }
+    for (uint32_t i = 0; i < parts.size(); ++i) {
+        if (root_of(next, i) != i) continue;
+        const auto number = groups.count();
+        Facts joined = facts[parts[i]];
+        groups.parent[parts[i]] = number;
+        groups.children.push_back(parts[i]);
+        for (uint32_t j = i + 1; j < parts.size(); ++j) {
+            if (root_of(next, j) != i) continue;
+            add(joined, facts[parts[j]]);
+            groups.parent[parts[j]] = number;
+            groups.children.push_back(parts[j]);
+        }
+        groups.first.push_back(static_cast<uint32_t>(groups.children.size()));
+        groups.parent.push_back(kNone);
+        groups.cell.push_back(edge);
+        facts.push_back(joined);
+        found.push_back(number);
+    }
+    return parts.size() * (parts.size() + 1) / 2;
+}
+
+bool GroupBuilder::join() {
+    if (!joining_) begin_joining();
+    Joining& own = *joining_;
+    for (size_t tested = 0; own.level > 0 && tested < kJoinedAtOnce;) {
+        const std::vector<Cell>& cells = levels_[own.level - 1];
+        own.found.resize(cells.size());
+        if (own.cell == cells.size()) {
+            own.groups.level_ends.push_back(own.groups.count());
+            own.finer = std::exchange(own.found, {});
+            own.cell = 0;
+            --own.level;
+            continue;
+        }
+        const float edge = std::ldexp(edge_, 1 - static_cast<int>(own.level));
+        tested += 1 + join_cell(cells[own.cell], edge, own.found[own.cell]);
+        ++own.cell;
+    }
+    if (own.level > 0) return true;
+    for (const Facts& facts : own.facts) own.groups.area.push_back(facts.area);
+    return false;
 }
 
 }  // namespace lucarne::gi::paths

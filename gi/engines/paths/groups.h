@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -41,9 +44,11 @@ struct Groups {
 /// Makes groups in two passes: leaves first, whose rays tell which of them see the same air.
 class GroupBuilder {
  public:
-    /// Divides cells until they fit into the narrowest ray that ends in them, or are about `least_cell`, m.
     /// `surfaces` must outlive it.
     GroupBuilder(const Surfaces& surfaces, std::span<const RayHit> hits, float least_cell);
+    /// Divides some more cells until they fit into the narrowest ray that ends in them, or are about
+    /// `least_cell`, m. Returns whether any are left; there are all leaves once none is.
+    bool divide();
 
     uint32_t leaves() const { return static_cast<uint32_t>(facts_.size()); }
     std::span<const uint32_t> leaf_of() const { return leaf_of_; }
@@ -53,8 +58,10 @@ class GroupBuilder {
     }
     /// Notes that a ray between two leaves met nothing, so both see the same air.
     void connect(uint32_t leaf, uint32_t other);
-    /// Joins leaves to larger groups.
-    Groups join() const;
+    /// Joins some more leaves to larger groups. Returns whether any are left.
+    bool join();
+    /// Returns the groups once all are joined.
+    Groups take() { return std::move(joining_->groups); }
 
  private:
     /// What decides which groups are joined.
@@ -75,6 +82,17 @@ class GroupBuilder {
                  last_part = 0;  ///< its children, cells of the next level; none: its leaves follow
         uint32_t first_leaf = 0, last_leaf = 0;
     };
+    /// What has been joined so far: cells from the finest level to the root.
+    struct Joining {
+        Groups groups;
+        std::vector<Facts> facts;                         ///< of the groups
+        size_t level = 0, cell = 0;                       ///< the levels above and the cells before are left
+        std::vector<std::vector<uint32_t>> finer, found;  ///< of each cell of the next level, of this: groups
+    };
+    void find_wanted(std::span<const RayHit> hits, float least_cell);
+    bool is_divided(const Cell& cell) const;
+    void begin_joining();
+    size_t join_cell(const Cell& cell, float edge, std::vector<uint32_t>& found);
     bool is_there(Side side) const;
     float area_of(Side side) const;
     void make_leaves(Cell& cell);
@@ -88,13 +106,18 @@ class GroupBuilder {
     SideSurfels surfels_;
     float edge_ = 0;                         ///< of the octree, m
     std::vector<uint32_t> order_;            ///< surfels along a curve through space
+    std::vector<uint64_t> codes_;            ///< of these surfels: where they are on that curve
+    std::vector<uint8_t> wanted_;            ///< of each surfel: the level whose cells fit into its rays
     std::vector<std::vector<Cell>> levels_;  ///< from the root
+    size_t level_ = 0, cell_ = 0;            ///< the next cell to divide
+    std::vector<Cell> finer_;                ///< parts of the cells of its level so far
     std::vector<Facts> facts_;               ///< of leaves
     std::vector<uint32_t> leaf_of_;
     std::vector<bool> is_met_;  ///< of each part of a disc: whether a ray meets it
     std::vector<Side> sides_;   ///< of leaves, in their order
     std::vector<uint32_t> starts_{0};
     std::vector<uint32_t> airs_;  ///< of leaves: the next one of a tree, which ends at its root
+    std::optional<Joining> joining_;
 };
 
 }  // namespace lucarne::gi::paths

@@ -19,8 +19,9 @@ constexpr float kTurn = 0.29403f, kSharingTurn = 0.17235f, kWideTurn = 0.48369f,
 /// Pixels with less weight than this in all take the nearest point.
 constexpr float kLeastSum = 1e-3f;
 constexpr size_t kPlacesAPiece = 256;
-/// Points between two looks at whether to stop: some tens of thousands of rays.
-constexpr size_t kTestedAtOnce = 2048;
+/// Points between two looks at whether to stop: to be shared with, and to be tested by some tens of thousands
+/// of rays.
+constexpr size_t kSharedAtOnce = 16384, kTestedAtOnce = 2048;
 
 }  // namespace
 
@@ -111,12 +112,17 @@ Sharing find_sharing(const PathsBake& bake, size_t places,
     return sharing;
 }
 
-Sharing find_sharing(const PathsBake& bake) {
-    const std::vector<GatheringPoint>& points = bake.paths.points;
-    return find_sharing(bake, points.size(), [&](PointFinder& finder, size_t i) {
-        finder.find_alike(points[i].position, points[i].normal);
+bool SharingFinder::advance() {
+    const std::vector<GatheringPoint>& points = bake_.paths.points;
+    const size_t first = sharing_.first.size() - 1, count = std::min(points.size() - first, kSharedAtOnce);
+    const Sharing more = find_sharing(bake_, count, [&](PointFinder& finder, size_t i) {
+        finder.find_alike(points[first + i].position, points[first + i].normal);
         return true;
     });
+    const auto before = static_cast<uint32_t>(sharing_.shares.size());
+    for (size_t i = 0; i < count; ++i) sharing_.first.push_back(before + more.first[i + 1]);
+    sharing_.shares.insert(sharing_.shares.end(), more.shares.begin(), more.shares.end());
+    return first + count < points.size();
 }
 
 double HiddenFinder::share() const {

@@ -46,8 +46,19 @@ glm::vec3 irradiance_of(std::span<const PointShare> shares, std::span<const glm:
 /// none.
 Sharing find_sharing(const PathsBake& bake, size_t places,
                      const std::function<bool(PointFinder&, size_t)>& find);
-/// Returns which points each gathering point shares its light with: those about it, as pixels do.
-Sharing find_sharing(const PathsBake& bake);
+/// Finds which points each gathering point shares its light with: those about it, as pixels do.
+class SharingFinder {
+ public:
+    /// `bake` must outlive it.
+    explicit SharingFinder(const PathsBake& bake) : bake_(bake) {}
+    /// Finds those of some more points. Returns whether any are left.
+    bool advance();
+    Sharing take() { return std::move(sharing_); }
+
+ private:
+    const PathsBake& bake_;
+    Sharing sharing_{.first = {0}, .shares = {}};
+};
 /// Finds which shares belong to points that something hides from each other: by rays, since walls() of points
 /// are coarse.
 class HiddenFinder {

@@ -20,7 +20,8 @@
 namespace lucarne::gi::paths {
 namespace {
 
-constexpr size_t kOriginsAtOnce = 2048, kOriginsAPiece = 16, kPathsAPiece = 1024, kLeavesAPiece = 1024;
+constexpr size_t kOriginsAtOnce = 2048, kOriginsAPiece = 16, kPathsAPiece = 1024, kLeavesAPiece = 1024,
+                 kLeavesAtOnce = 65536;
 /// Places that are tried for each entry point, and in how many steps they are ordered along a curve.
 constexpr size_t kTried = 8;
 constexpr float kCurve = 1023;
@@ -51,9 +52,11 @@ struct Place {
     glm::vec3 position{0.0f};
 };
 
+}  // namespace
+
 /// The places of leaves that the rays of gathering points met. Rays count by the area for which their point
 /// stands: there are many points in corners, and most of what they see no one else does.
-class MetPlaces {
+class EntryChooser::MetPlaces {
  public:
     /// `points`: with their rays, chosen with `seed`. Those of leaves that are not `used` do not count. The
     /// references must outlive it.
@@ -66,9 +69,25 @@ class MetPlaces {
             weights_[leaf] += weight_of(hit);
         });
     }
-    /// Returns so many of each leaf's places, even in the leaf; none where there are none.
-    std::vector<std::vector<Place>> choose(std::span<const uint32_t> own) const {
-        const std::vector<std::vector<uint32_t>> some = choose_some(own);
+    /// Returns kTried times so many hits of each leaf, at the middles of equal parts of the weight of all in
+    /// their order, which looks random.
+    std::vector<std::vector<uint32_t>> choose_some(std::span<const uint32_t> own) const {
+        std::vector<std::vector<uint32_t>> some(met_.size());
+        std::vector<uint32_t> left = met_;
+        std::vector<double> gone(met_.size(), 0);
+        each([&](size_t hit, uint32_t leaf) {
+            const size_t count = kTried * std::min(own[leaf], met_[leaf]);
+            gone[leaf] += weight_of(hit);
+            const bool is_last = --left[leaf] == 0;
+            const double due = is_last ? static_cast<double>(count)
+                                       : gone[leaf] / weights_[leaf] * static_cast<double>(count) - .5;
+            while (some[leaf].size() < count && static_cast<double>(some[leaf].size()) < due)
+                some[leaf].push_back(static_cast<uint32_t>(hit));
+        });
+        return some;
+    }
+    /// Returns places of leaves, even in each of them. `some`: of choose_some().
+    std::vector<std::vector<Place>> choose(std::span<const std::vector<uint32_t>> some) const {
         std::vector<std::vector<Place>> chosen(some.size());
         parallel_ranges(chosen.size(), kLeavesAPiece, [&](size_t begin, size_t end) {
             for (size_t leaf = begin; leaf < end; ++leaf) chosen[leaf] = even_ones(some[leaf]);
@@ -94,23 +113,6 @@ class MetPlaces {
         return {points_.hits[hit].side, paths::place_of({point.position, point.normal, point.radius}, seed_,
                                                         point.side, static_cast<uint32_t>(hit % rays()),
                                                         static_cast<uint32_t>(rays()), points_.hits[hit])};
-    }
-    /// Returns kTried times as many hits, at the middles of equal parts of the weight of all in their order,
-    /// which looks random.
-    std::vector<std::vector<uint32_t>> choose_some(std::span<const uint32_t> own) const {
-        std::vector<std::vector<uint32_t>> some(met_.size());
-        std::vector<uint32_t> left = met_;
-        std::vector<double> gone(met_.size(), 0);
-        each([&](size_t hit, uint32_t leaf) {
-            const size_t count = kTried * std::min(own[leaf], met_[leaf]);
-            gone[leaf] += weight_of(hit);
-            const bool is_last = --left[leaf] == 0;
-            const double due = is_last ? static_cast<double>(count)
-                                       : gone[leaf] / weights_[leaf] * static_cast<double>(count) - .5;
-            while (some[leaf].size() < count && static_cast<double>(some[leaf].size()) < due)
-                some[leaf].push_back(static_cast<uint32_t>(hit));
-        });
-        return some;
     }
     /// Returns the place of one of kTried hits each along a curve through space.
     std::vector<Place> even_ones(std::span<const uint32_t> hits) const {
@@ -144,8 +146,6 @@ class MetPlaces {
     std::vector<double> weights_;
 };
 
-}  // namespace
-
 uint32_t encode_place(const Surfel& disc, const glm::vec3& place) {
     glm::vec3 tangent, bitangent;
     tracing::frame_of(disc.normal, tangent, bitangent);
@@ -160,40 +160,53 @@ glm::vec3 place_on(const Surfel& disc, uint32_t code) {
     return disc.position + offset.x * tangent + offset.y * bitangent;
 }
 
-EntryPoints choose_entries(const Surfaces& surfaces, const GroupBuilder& builder,
+EntryChooser::EntryChooser(const Surfaces& surfaces, const GroupBuilder& builder,
                            std::span<const float> areas, std::span<const uint8_t> used,
-                           const PointChooser::State& points, uint64_t seed, uint64_t count) {
-    EntryPoints entries;
-    const MetPlaces met(builder, used, points, seed);
-    const auto add = [&](Side side, const glm::vec3& place) {
-        const Side of_disc =
-            surfaces.is_part(side) ? surfaces.parts()[side / 2 - surfaces.discs()].side : side;
-        entries.sides.push_back(of_disc);
-        entries.places.push_back(encode_place(surfaces.tracer().surfels()[of_disc / 2], place));
-    };
+                           const PointChooser::State& points, uint64_t seed, uint64_t count)
+    : surfaces_(surfaces),
+      builder_(builder),
+      own_(builder.leaves(), 0),
+      met_(std::make_unique<MetPlaces>(builder, used, points, seed)) {
     double total = 0;
     for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf)
         if (used[leaf]) total += areas[leaf];
-    std::vector<uint32_t> own(builder.leaves(), 0);
     for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf) {
         if (!used[leaf]) continue;
         const double share = total > 0 ? areas[leaf] / total : 0;
-        own[leaf] = static_cast<uint32_t>(std::clamp(std::round(share * static_cast<double>(count)), 1.0,
-                                                     static_cast<double>(builder.sides_of(leaf).size())));
+        own_[leaf] = static_cast<uint32_t>(std::clamp(std::round(share * static_cast<double>(count)), 1.0,
+                                                      static_cast<double>(builder.sides_of(leaf).size())));
     }
-    const std::vector<std::vector<Place>> places = met.choose(own);
-    for (uint32_t leaf = 0; leaf < builder.leaves(); ++leaf) {
-        entries.first.push_back(static_cast<uint32_t>(entries.sides.size()));
-        for (const Place& place : places[leaf]) add(place.side, place.position);
-        if (own[leaf] == 0 || !places[leaf].empty()) continue;
-        const ByArea centres(surfaces, builder.sides_of(leaf));
-        for (uint32_t i = 0; i < own[leaf]; ++i) {
-            const Side side = centres.at((i + .5) / own[leaf]);
-            add(side, surfaces.surfels()[side / 2].position);
+    entries_.first.push_back(0);
+}
+
+EntryChooser::~EntryChooser() = default;
+
+void EntryChooser::add(Side side, const glm::vec3& place) {
+    const Side of_disc =
+        surfaces_.is_part(side) ? surfaces_.parts()[side / 2 - surfaces_.discs()].side : side;
+    entries_.sides.push_back(of_disc);
+    entries_.places.push_back(encode_place(surfaces_.tracer().surfels()[of_disc / 2], place));
+}
+
+bool EntryChooser::advance() {
+    if (some_.size() < own_.size()) {
+        some_ = met_->choose_some(own_);
+        return true;
+    }
+    const size_t begin = entries_.first.size() - 1, end = std::min(own_.size(), begin + kLeavesAtOnce);
+    const std::vector<std::vector<Place>> places = met_->choose(std::span(some_).subspan(begin, end - begin));
+    for (size_t leaf = begin; leaf < end; ++leaf) {
+        for (const Place& place : places[leaf - begin]) add(place.side, place.position);
+        if (own_[leaf] > 0 && places[leaf - begin].empty()) {
+            const ByArea centres(surfaces_, builder_.sides_of(static_cast<uint32_t>(leaf)));
+            for (uint32_t i = 0; i < own_[leaf]; ++i) {
+                const Side side = centres.at((i + .5) / own_[leaf]);
+                add(side, surfaces_.surfels()[side / 2].position);
+            }
         }
+        entries_.first.push_back(static_cast<uint32_t>(entries_.sides.size()));
     }
-    entries.first.push_back(static_cast<uint32_t>(entries.sides.size()));
-    return entries;
+    return end < own_.size();
 }
 
 LinkBuilder::LinkBuilder(const Surfaces& surfaces, const GroupBuilder& builder, const Groups& groups,

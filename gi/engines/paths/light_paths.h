@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,10 +33,29 @@ glm::vec3 place_on(const Surfel& disc, uint32_t code);
 /// names, and none in others. They are places that the rays of gathering points met, spread evenly over
 /// these: what of a leaf a room sees may be darker than the rest, as in the reveal of a window, and of discs
 /// that overlap it sees parts. Rays count by the area for which their point stands. In leaves that no ray met
-/// they are centres of discs, spread by area. `points`: with their rays, chosen with `seed`.
-EntryPoints choose_entries(const Surfaces& surfaces, const GroupBuilder& builder,
-                           std::span<const float> areas, std::span<const uint8_t> used,
-                           const PointChooser::State& points, uint64_t seed, uint64_t count);
+/// they are centres of discs, spread by area.
+class EntryChooser {
+ public:
+    /// `points`: with their rays, chosen with `seed`. The references must outlive it.
+    EntryChooser(const Surfaces& surfaces, const GroupBuilder& builder, std::span<const float> areas,
+                 std::span<const uint8_t> used, const PointChooser::State& points, uint64_t seed,
+                 uint64_t count);
+    ~EntryChooser();
+    /// Chooses those of some more leaves. Returns whether any are left.
+    bool advance();
+    EntryPoints take() { return std::move(entries_); }
+
+ private:
+    class MetPlaces;
+    void add(Side side, const glm::vec3& place);
+
+    const Surfaces& surfaces_;
+    const GroupBuilder& builder_;
+    std::vector<uint32_t> own_;       ///< of each leaf: its entry points
+    std::unique_ptr<MetPlaces> met_;  ///< what rays met
+    std::vector<std::vector<uint32_t>> some_;
+    EntryPoints entries_;
+};
 
 /// Rays of a place that tell how the light of others reaches it.
 inline constexpr uint32_t kLinks = 64;

@@ -27,10 +27,10 @@ class PathBuilder {
     PathBuilder(const Surfaces& surfaces, const PathPlan& plan);
 
     bool choose_points() { return chooser_.advance(); }
-    void make_groups();
-    void join_groups();
+    bool make_groups();
+    bool join_groups();
     bool make_links() { return links_->advance(); }
-    void make_entries();
+    bool make_entries();
     bool make_photons();
     LightPaths take();
 
@@ -46,7 +46,9 @@ class PathBuilder {
     PathPlan plan_;
     PointChooser chooser_;
     std::optional<GroupBuilder> groups_;
+    size_t next_connected_ = 0, next_ray_ = 0;  ///< hits: those before are connected, name their groups
     std::optional<LinkBuilder> links_;
+    std::optional<EntryChooser> entries_;
     size_t next_path_ = 0, last_path_ = 0;  ///< photon paths: the next one, all
     LightPaths paths_;
 };

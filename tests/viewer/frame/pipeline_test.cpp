@@ -267,6 +267,27 @@ TEST_F(PipelineTest, AMotionWithReducedSettingsStartsNoPreparationAgain) {
     EXPECT_EQ(begun, 3) << "none is left";
 }
 
+TEST_F(PipelineTest, APreparationTellsNothingOnceAnotherScanIsOpen) {
+    struct News {
+        std::atomic<double> share = 0;
+        std::counting_semaphore<> told{0};
+    };
+    const auto news = std::make_shared<News>();
+    pipeline_->on_prepared([news](const gi::BakeJob::Status& status) {
+        news->share = status.share;
+        news->told.release();
+    });
+    request_.wait = false;
+    request_.prepares = "paths";
+    frame("direct");
+    while (news->share == 0) news->told.acquire();
+    const test::TemporaryFolder folder;
+    const auto other = open_input(test::make_cornell(folder, "30k"));
+    ASSERT_TRUE(other) << other.error().line();
+    ASSERT_TRUE(pipeline_->set_source(*other));
+    EXPECT_EQ(news->share, 0) << "of the scan that was open";
+}
+
 TEST_F(PipelineTest, APreparationThatFailedBeginsAgainOnlyIfItIsAskedForAgain) {
     const auto cache = source_->identity()->file;
     const std::string copy = folder_ / "copy.luc";

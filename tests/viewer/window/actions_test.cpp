@@ -319,6 +319,21 @@ TEST_F(PreparingLight, SaysWhatIsKeptOnlyWhereItIs) {
     EXPECT_THAT(what_stopping_keeps(lighting()), testing::HasSubstr("Nothing"));
 }
 
+TEST_F(PreparingLight, ReadsWhatIsKeptOnceForEachNewsOfIt) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder / "scan.luc.paths.bake";
+    ASSERT_TRUE(gi::write_bake(file, {{"paths", 7, 1, .5}, {}}));
+    model_.lights.preparation.place = file;
+    run(begin_);
+    tell(at(.5));
+    EXPECT_THAT(what_stopping_keeps(lighting()), testing::HasSubstr("are kept"));
+    ASSERT_TRUE(gi::write_bake(file, {{"paths", 7, 2, 1}, {}}));
+    tell(at(.5));
+    EXPECT_THAT(what_stopping_keeps(lighting()), testing::HasSubstr("are kept")) << "nothing is read";
+    tell(at(.6));
+    EXPECT_THAT(what_stopping_keeps(lighting()), testing::HasSubstr("Nothing"));
+}
+
 TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     ImGui::CreateContext();  // the first views fit the window
     ImGui::GetIO().DisplaySize = ImVec2(400, 300);

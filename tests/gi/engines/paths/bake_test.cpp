@@ -1,6 +1,7 @@
 #include "gi/engines/paths/bake.h"
 
 #include <cstring>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -89,6 +90,20 @@ TEST(PathsBake, LooksForHiddenNeighboursInStepsThatCanBeStopped) {
     EXPECT_GT(steps, 1u);
     ASSERT_TRUE(runner.run(input, StepBudget{}));
     EXPECT_EQ(work->share(), 1);
+}
+
+TEST(PathsBake, MakesGroupsAndEntryPointsInStepsThatCanBeStopped) {
+    const BakeInput input = input_of(scenes::closed_box(1, 60, glm::vec3(.5f)), 40, 64);
+    const auto work = kPathsPrecomputes.make();
+    StepRunner<const BakeInput> runner;
+    runner.start(work->steps(input));
+    std::map<std::string, size_t> steps;
+    while (runner.running()) {
+        ++steps[std::string(runner.step())];
+        ASSERT_TRUE(runner.run(input, StepBudget::timed(0)));
+    }
+    // Of the coarse paths and of all.
+    for (const char* name : {"groups", "larger groups", "entry points"}) EXPECT_GT(steps[name], 4u) << name;
 }
 
 TEST(PathsBake, CoarsePathsAreUsableBeforeAllAreMade) {

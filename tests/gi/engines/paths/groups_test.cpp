@@ -17,10 +17,12 @@ Groups groups_of(const std::vector<Surfel>& surfels, float width, const Connecte
     for (Side side = 0; side < 2 * surfels.size(); ++side) hits.push_back({side, width});
     const Surfaces surfaces = surfaces_of(surfels);
     GroupBuilder builder(surfaces, hits, 0);
+    while (builder.divide()) continue;
     for (uint32_t a = 0; a < builder.leaves(); ++a)
         for (uint32_t b = a + 1; b < builder.leaves(); ++b)
             if (connected(builder.sides_of(a).front(), builder.sides_of(b).front())) builder.connect(a, b);
-    return builder.join();
+    while (builder.join()) continue;
+    return builder.take();
 }
 
 /// The group without a parent that holds a side.
@@ -62,12 +64,13 @@ TEST(Groups, CellsFitIntoTheNarrowestRay) {
     const auto surfels = scenes::closed_box(1, 64, glm::vec3(.5f));
     std::vector<RayHit> hits = {{0, .05f}, {2 * 64 * 64, .3f}};
     const Surfaces surfaces = surfaces_of(surfels);
-    GroupBuilder builder(surfaces, hits, 0);
-    const Groups groups = builder.join();
+    GroupBuilder builder(surfaces, hits, 0), bounded(surfaces, hits, .4f);
+    while (builder.divide() || bounded.divide()) continue;
+    while (builder.join()) continue;
+    const Groups groups = builder.take();
     EXPECT_LE(groups.cell[groups.leaf_of[0]], .0625f);
     const uint32_t far_from_it = groups.leaf_of[2 * (2 * 64 * 64 - 1)];
     EXPECT_GT(groups.cell[far_from_it], .2f);
-    GroupBuilder bounded(surfaces, hits, .4f);
     EXPECT_LT(bounded.leaves(), builder.leaves());
 }
 
@@ -155,7 +158,9 @@ TEST(Groups, ReachOverTheBackOfACurvedSurface) {
 
 TEST(Groups, OfNothingAreNone) {
     const Surfaces none = surfaces_of({});
-    const Groups groups = GroupBuilder(none, {}, 0).join();
+    GroupBuilder builder(none, {}, 0);
+    while (builder.divide() || builder.join()) continue;
+    const Groups groups = builder.take();
     EXPECT_EQ(groups.count(), 0u);
 }
 
