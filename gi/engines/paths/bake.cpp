@@ -179,6 +179,7 @@ class PathsPrecomputation final : public Precomputation {
         bake->near = PointCells(paths.points, kPixelReach);
         bake->near_blocks = native::point_blocks(paths.points, bake->near.numbers(), kPixelReach);
         bake->far = PointCells(paths.points, kFarReach);
+        bake->planes = paths.groups.find_planes();
         bake->paths = std::move(paths);
         bake->seed = input.settings[kSeed];
         next_ = std::move(bake);
@@ -226,7 +227,7 @@ constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info,
 
 const Precomputes kPathsPrecomputes{
     .make = []() -> std::unique_ptr<Precomputation> { return std::make_unique<PathsPrecomputation>(); },
-    .version = 7,
+    .version = 8,
     .options = kOfBake,
     .cost = &cost_of};
 

@@ -66,6 +66,7 @@ class PathsBake final : public Bake, public std::enable_shared_from_this<PathsBa
     LightPaths paths;
     uint64_t seed = 0;                            ///< of the directions of the gathering rays
     std::vector<Entry> entries;                   ///< of paths.entries
+    std::vector<GroupPlane> planes;               ///< of paths.groups
     PointCells near;                              ///< of the gathering points, with their reaches on pixels
     std::vector<native::PointBlock> near_blocks;  ///< the points of near.numbers()
     PointCells far;                               ///< likewise, for pixels that no reach covers

@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "gi/shared/surfel_code.h"
 #include "octree/tree/key.h"
 #include "octree/tree/radix_sort.h"
 
@@ -48,6 +49,31 @@ uint32_t Groups::fitting(uint32_t leaf, float width) const {
     return group;
 }
 
+std::vector<GroupPlane> Groups::find_planes() const {
+    std::vector<GroupPlane> found(count());
+    for (uint32_t leaf = 0; leaf < leaves; ++leaf) {
+        const LeafPlane& plane = planes[leaf];
+        const glm::vec3 at(plane.centre[0], plane.centre[1], plane.centre[2]);
+        const uint32_t normal = plane.normal;
+        found[leaf] = {corner + (at + .5f) * (edge / 65536),
+                       decode_octahedral((normal & 0xffu) << 8 | (normal & 0xff00u) << 16 | 0x800080u)};
+    }
+    for (uint32_t group = leaves; group < count(); ++group) {
+        glm::vec3 centre(0.0f), normal(0.0f);
+        float sum = 0;
+        for (const uint32_t child : children_of(group)) {
+            const float weight = std::max(area[child], kLeastWeight);
+            centre += weight * found[child].centre;
+            normal += weight * found[child].normal;
+            sum += weight;
+        }
+        const float length = glm::length(normal);
+        found[group] = {centre / std::max(sum, kLeastWeight),
+                        length > 0 ? normal / length : glm::vec3(0, 0, 1)};
+    }
+    return found;
+}
+
 GroupBuilder::GroupBuilder(const Surfaces& surfaces, std::span<const RayHit> hits, float least_cell)
     : surfaces_(surfaces), surfels_(surfaces.surfels()), leaf_of_(2 * surfels_.size(), kNone) {
     const SideSurfels& surfels = surfels_;
@@ -61,6 +87,7 @@ GroupBuilder::GroupBuilder(const Surfaces& surfaces, std::span<const RayHit> hit
     const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
     const double edge = std::max({size.x, size.y, size.z, 1e-6});
     edge_ = static_cast<float>(edge);
+    corner_ = low;
     std::vector<octree::CodeIndex> codes;
     for (uint32_t i = 0; i < surfels.size(); ++i) {
         const glm::dvec3 at =
@@ -323,6 +350,16 @@ size_t GroupBuilder::join_cell(const Cell& cell, float edge, std::vector<uint32_
     return parts.size() * (parts.size() + 1) / 2;
 }
 
+LeafPlane GroupBuilder::plane_of(const Facts& facts) const {
+    LeafPlane plane;
+    const glm::vec3 at = (facts.centre - corner_) * (65536 / edge_);
+    for (int axis = 0; axis < 3; ++axis)
+        plane.centre[static_cast<size_t>(axis)] = static_cast<uint16_t>(std::clamp(at[axis], 0.0f, 65535.0f));
+    const uint32_t code = encode_octahedral(glm::normalize(facts.normal));
+    plane.normal = static_cast<uint16_t>((code >> 8 & 0xffu) | (code >> 16 & 0xff00u));
+    return plane;
+}
+
 bool GroupBuilder::join() {
     if (!joining_) begin_joining();
     Joining& own = *joining_;
@@ -342,6 +379,9 @@ bool GroupBuilder::join() {
     }
     if (own.level > 0) return true;
     for (const Facts& facts : own.facts) own.groups.area.push_back(facts.area);
+    own.groups.corner = corner_;
+    own.groups.edge = edge_;
+    for (const Facts& facts : facts_) own.groups.planes.push_back(plane_of(facts));
     return false;
 }
 

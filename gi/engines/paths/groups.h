@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -15,6 +16,18 @@
 
 namespace lucarne::gi::paths {
 
+/// The plane in which a leaf lies, in few bytes.
+struct LeafPlane {
+    std::array<uint16_t, 3> centre{};  ///< in Groups::corner and edge
+    uint16_t normal = 0;               ///< an octahedral code of 8 bits along each axis
+    bool operator==(const LeafPlane&) const = default;
+};
+
+/// The plane in which a group lies: its mean place and unit normal.
+struct GroupPlane {
+    glm::vec3 centre{0.0f}, normal{0.0f, 0.0f, 1.0f};
+};
+
 /// The hierarchical volumetric data structure of Yue et al. 2007, section 5.3: sides of surfels, grouped by
 /// the cells of an adaptive octree. A group is what one cell holds of one surface: sides that face the same
 /// of six directions, lie in one plane (sheets that are farther apart than their discs are wide are
@@ -28,6 +41,9 @@ struct Groups {
     std::vector<uint32_t> first;       ///< of each larger group: of its children; and their end
     std::vector<uint32_t> children;    ///< of larger groups, in their order
     std::vector<uint32_t> level_ends;  ///< ends of the larger groups of each cell size, smallest first
+    std::vector<LeafPlane> planes;     ///< of leaves
+    glm::vec3 corner{0.0f};            ///< of the cube that holds all, and its edge, m
+    float edge = 0;
 
     uint32_t count() const { return static_cast<uint32_t>(parent.size()); }
     /// The groups that a larger one joins.
@@ -38,6 +54,8 @@ struct Groups {
     /// Returns the largest group about this leaf whose cell fits into a ray of this width, m; the leaf
     /// itself if none does.
     uint32_t fitting(uint32_t leaf, float width) const;
+    /// Returns the planes of all groups: those of larger ones are means by area.
+    std::vector<GroupPlane> find_planes() const;
     bool operator==(const Groups&) const = default;
 };
 
@@ -92,6 +110,7 @@ class GroupBuilder {
     void find_wanted(std::span<const RayHit> hits, float least_cell);
     bool is_divided(const Cell& cell) const;
     void begin_joining();
+    LeafPlane plane_of(const Facts& facts) const;
     size_t join_cell(const Cell& cell, float edge, std::vector<uint32_t>& found);
     bool is_there(Side side) const;
     float area_of(Side side) const;
@@ -104,7 +123,8 @@ class GroupBuilder {
 
     const Surfaces& surfaces_;
     SideSurfels surfels_;
-    float edge_ = 0;                         ///< of the octree, m
+    glm::vec3 corner_{0.0f};  ///< of the octree, and its edge, m
+    float edge_ = 0;
     std::vector<uint32_t> order_;            ///< surfels along a curve through space
     std::vector<uint64_t> codes_;            ///< of these surfels: where they are on that curve
     std::vector<uint8_t> wanted_;            ///< of each surfel: the level whose cells fit into its rays

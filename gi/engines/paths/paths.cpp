@@ -15,6 +15,7 @@
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/entry_light.h"
 #include "gi/engines/paths/interpolation.h"
+#include "gi/engines/paths/moved_rays.h"
 #include "gi/engines/paths/native/grid_light.h"
 #include "gi/engines/paths/options.h"
 #include "gi/engines/paths/pixel_points.h"
@@ -79,10 +80,14 @@ class PathsEngine final : public Engine {
     Result<void> bounce(Frame& frame, const std::vector<LightView>& views, bool any_state);
     Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const ArrivingLight* arriving_light(Frame& frame, std::span<const Material> materials);
+    const MovedRays* moved_rays(Frame& frame);
+    glm::vec3 light_at(const Frame& frame, const SurfacePoint& place, std::span<const PointShare> about,
+                       const MovedRays* moved) const;
     void visit_points(const Frame& frame, PixelPoints::List list, std::span<const SurfacePoint> surfaces,
                       const PixelPoints::Visit& visit);
     void add_by_grid(const Frame& frame, std::span<const Material> materials,
-                     std::span<const GBufferTexel> texels, uint32_t step, std::span<glm::vec4> radiance);
+                     std::span<const GBufferTexel> texels, uint32_t step, const MovedRays* moved,
+                     std::span<glm::vec4> radiance);
     void add_indirect(Frame& frame);
 
     SceneRevisions scene_;
@@ -103,7 +108,8 @@ class PathsEngine final : public Engine {
     std::vector<glm::vec3> irradiance_;      ///< at gathering points; empty: not known
     std::vector<glm::vec3> sky_irradiance_;  ///< likewise, what comes straight from the sky; empty: nothing
     std::optional<ArrivingLight> arriving_;  ///< for glossy surfaces
-    bool arriving_is_old_ = true;
+    std::optional<MovedRays> moved_;         ///< for pixels at rest
+    bool arriving_is_old_ = true, moved_is_old_ = true;
     PixelPoints pixel_points_;
     size_t alone_ = 0;  ///< pixels of the last frame that no gathering point reached
 };
@@ -120,6 +126,7 @@ Result<void> PathsEngine::prepare(Frame& frame) {
         point_sky_of_.reset();
         irradiance_.clear();
         arriving_.reset();
+        moved_.reset();
         pixel_points_ = PixelPoints();
     }
     LUCARNE_TRY(upload_sky(frame, sky_));
@@ -226,7 +233,7 @@ Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& vi
         sky_irradiance_ = smooth(relight_->bake(), sky->irradiance());
         for (size_t i = 0; i < irradiance_.size(); ++i) irradiance_[i] += sky_irradiance_[i];
     }
-    arriving_is_old_ = true;
+    arriving_is_old_ = moved_is_old_ = true;
     light_of_ = std::move(basis);
     return {};
 }
@@ -244,6 +251,24 @@ const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const M
     return &*arriving_;
 }
 
+/// Returns the rays by which light at pixels differs from that at gathering points; null in motion, and where
+/// nothing bounces.
+const MovedRays* PathsEngine::moved_rays(Frame& frame) {
+    if (!traces_shadows(frame) || !wants_indirect(frame.settings)) return nullptr;
+    if (!moved_) moved_.emplace(relight_->shared_bake());
+    if (std::exchange(moved_is_old_, false)) moved_->set(relight_->radiosity());
+    return &*moved_;
+}
+
+/// Returns the irradiance at a place, W/m^2, from that of the points about it. `moved`: of moved_rays().
+glm::vec3 PathsEngine::light_at(const Frame& frame, const SurfacePoint& place,
+                                std::span<const PointShare> about, const MovedRays* moved) const {
+    const glm::vec3 light = irradiance_of(about, irradiance_);
+    if (!moved || about.empty()) return light;
+    const glm::vec3 sky = sky_irradiance_.empty() ? glm::vec3(0.0f) : irradiance_of(about, sky_irradiance_);
+    return sky + moved->factor(place, frame.bake_offset, about) * (light - sky);
+}
+
 /// Visits the gathering points of pixels, as PixelPoints; at rest those that pixels see.
 void PathsEngine::visit_points(const Frame& frame, PixelPoints::List list,
                                std::span<const SurfacePoint> surfaces, const PixelPoints::Visit& visit) {
@@ -258,7 +283,7 @@ void PathsEngine::visit_points(const Frame& frame, PixelPoints::List list,
 /// Finds the light at one pixel in each square of `step`, and adds what all pixels reflect: between these it
 /// is interpolated where they lie in one plane.
 void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> materials,
-                              std::span<const GBufferTexel> texels, uint32_t step,
+                              std::span<const GBufferTexel> texels, uint32_t step, const MovedRays* moved,
                               std::span<glm::vec4> radiance) {
     // The places do not move from frame to frame, or their points would have to be found again.
     const GatherGrid grid{frame.camera.width, frame.camera.height, step, step / 2, step / 2};
@@ -270,7 +295,7 @@ void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> mate
     std::vector<native::GridLight> lights(pixels.size());
     visit_points(frame, PixelPoints::List::grid, places, [&](size_t i, std::span<const PointShare> about) {
         lights[i] = {places[i].position - glm::vec3(frame.camera.origin), 1, places[i].normal,
-                     irradiance_of(about, irradiance_)};
+                     light_at(frame, places[i], about, moved)};
     });
     const gi::native::DiffuseTables reflectances(materials);
     const std::vector<uint32_t> rest =
@@ -279,7 +304,7 @@ void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> mate
     visit_points(frame, PixelPoints::List::rest, others, [&](size_t i, std::span<const PointShare> about) {
         const Reflectance r =
             make_reflectance(materials[others[i].material % materials.size()], others[i].albedo);
-        radiance[rest[i]] += glm::vec4(r.kd / kPi * irradiance_of(about, irradiance_), 0);
+        radiance[rest[i]] += glm::vec4(r.kd / kPi * light_at(frame, others[i], about, moved), 0);
     });
 }
 
@@ -288,6 +313,7 @@ void PathsEngine::add_indirect(Frame& frame) {
     const PathsBake& bake = relight_->bake();
     const std::vector<Material> materials = device_materials(frame.materials);
     const ArrivingLight* glossy = arriving_light(frame, materials);
+    const MovedRays* moved = moved_rays(frame);
     const TimedPass pass(frame, "interpolation");
     const std::vector<GBufferTexel> texels = download_gbuffer(frame);
     auto radiance = frame.gl.radiance.download_all<glm::vec4>(texels.size());
@@ -299,14 +325,14 @@ void PathsEngine::add_indirect(Frame& frame) {
     const uint32_t step = glossy || sky_rays ? 1 : frame.settings[kGatherEvery];
     pixel_points_.begin(bake, frame.camera, texels, frame.bake_offset, step);
     if (step > 1) {
-        add_by_grid(frame, materials, texels, step, radiance);
+        add_by_grid(frame, materials, texels, step, moved, radiance);
     } else {
         const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
         visit_points(
             frame, PixelPoints::List::grid, surfaces, [&](size_t i, std::span<const PointShare> about) {
                 if ((about.empty() && !sky_rays) || frame.stopped()) return;
                 const SurfacePoint& at = surfaces[i];
-                glm::vec3 irradiance = irradiance_of(about, irradiance_);
+                glm::vec3 irradiance = light_at(frame, at, about, moved);
                 if (sky_rays)
                     irradiance =
                         glm::max(irradiance + sky_rays->correction(at, about, mix64(~seed + 1, i)), 0.0f);

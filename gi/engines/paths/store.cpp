@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <glm/vec4.hpp>
+
 namespace lucarne::gi::paths {
 namespace {
 
@@ -83,6 +85,8 @@ BakeSections write_paths(const LightPaths& paths) {
     put(sections, "children", groups.children);
     put(sections, "first children", groups.first);
     put(sections, "levels", groups.level_ends);
+    put(sections, "planes", groups.planes);
+    put(sections, "cube", std::vector{glm::vec4(groups.corner, groups.edge)});
     return sections;
 }
 
@@ -106,9 +110,20 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     LUCARNE_TRY(take(sections, "children", groups.children));
     LUCARNE_TRY(take(sections, "first children", groups.first));
     LUCARNE_TRY(take(sections, "levels", groups.level_ends));
+    LUCARNE_TRY(take(sections, "planes", groups.planes));
+    std::vector<glm::vec4> cube;
+    LUCARNE_TRY(take(sections, "cube", cube));
+    // Farther away, distances would be beyond floats.
+    const auto is_place = [](float at) { return std::abs(at) < 1e9f; };
+    if (cube.size() != 1 || !is_place(cube[0].x) || !is_place(cube[0].y) || !is_place(cube[0].z) ||
+        !(cube[0].w > 0) || !is_place(cube[0].w))
+        return damaged("cube");
+    groups.corner = glm::vec3(cube[0]);
+    groups.edge = cube[0].w;
     if (groups.first.empty() || groups.first.size() - 1 > groups.parent.size())
         return damaged("first children");
     groups.leaves = static_cast<uint32_t>(groups.parent.size() - (groups.first.size() - 1));
+    if (groups.planes.size() != groups.leaves) return damaged("planes");
     if (!is_sound(groups)) return damaged("children");
     const auto is_point = [](const GatheringPoint& p) { return p.reach > 0 && p.is_finite(); };
     if (!std::ranges::all_of(paths.points, is_point)) return damaged("points");

@@ -74,6 +74,20 @@ TEST(Groups, CellsFitIntoTheNarrowestRay) {
     EXPECT_LT(bounded.leaves(), builder.leaves());
 }
 
+TEST(Groups, LieInPlanesThroughTheirSides) {
+    const auto surfels = scenes::closed_box(1, 32, glm::vec3(.5f));
+    const Groups groups = groups_of(surfels, .1f, all_see_each_other);
+    const std::vector<GroupPlane> planes = groups.find_planes();
+    ASSERT_EQ(planes.size(), groups.count());
+    for (Side side = 0; side < 2 * surfels.size(); ++side)
+        for (uint32_t group = groups.leaf_of[side]; group != kNone; group = groups.parent[group]) {
+            const glm::vec3 away = surfels[side / 2].position - planes[group].centre;
+            EXPECT_NEAR(glm::dot(away, planes[group].normal), 0, .01f);
+            EXPECT_LT(glm::length(away), 1.5f * groups.cell[group]);
+            EXPECT_GT(glm::dot(normal_of(surfels, side), planes[group].normal), .999f);
+        }
+}
+
 TEST(Groups, NeverHoldBothSidesOfASheet) {
     for (const glm::vec3& across : {kX, glm::vec3(.7f, .7f, 0), glm::vec3(.58f, .58f, .58f)}) {
         std::vector<Surfel> surfels;

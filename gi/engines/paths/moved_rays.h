@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/engines/paths/bake.h"
+#include "gi/host_frame.h"
+
+namespace lucarne::gi::paths {
+
+/// The light of gathering points at other places: what their rays met is seen from there. Near a patch of
+/// sun, and on the reveal of a window, light changes by much from one point to the next, and pixels see one
+/// end of it. Cosines and distances are those of the other place (as of irradiance gradients, Ward & Heckbert
+/// 1992, but not linear); what hides one from the other is not.
+class MovedRays {
+ public:
+    explicit MovedRays(std::shared_ptr<const PathsBake> bake);
+    /// Takes the radiosity of all groups, W/m^2.
+    void set(std::span<const glm::vec3> radiosity);
+    /// Returns how many times as much light arrives at a place as at its gathering points in their mean.
+    /// Even light is the same everywhere. `offset`: of the bake's coordinates in those of the place.
+    /// Thread-safe.
+    float factor(const SurfacePoint& place, const glm::vec3& offset, std::span<const PointShare> about) const;
+
+ private:
+    /// A ray of a point.
+    struct Ray {
+        glm::vec3 place{0.0f};  ///< that it meets
+        float weight = 0;       ///< 1 / what it counts at the point
+        glm::vec3 normal{0.0f};
+        uint32_t group = 0;  ///< as an index of light_
+    };
+    std::vector<Ray> make_rays(const GatheringPoint& point, std::span<const uint32_t> groups) const;
+    std::span<const Ray> rays_of(uint32_t point, std::vector<Ray>& own) const;
+
+    std::shared_ptr<const PathsBake> bake_;
+    std::vector<float> light_;  ///< luminance of the radiosity of each group; then darkness
+    /// The rays of points that pictures have shown, made when they are first asked for.
+    struct Kept {
+        std::once_flag once;
+        std::vector<Ray> rays;
+    };
+    mutable std::unique_ptr<Kept[]> kept_;
+    mutable std::atomic<size_t> count_ = 0;
+};
+
+}  // namespace lucarne::gi::paths

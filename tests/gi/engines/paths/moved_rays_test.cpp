@@ -1,0 +1,102 @@
+#include "gi/engines/paths/moved_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "gi/engines/paths/interpolation.h"
+#include "gi/shared/brdf.h"
+#include "tests/gi/engines/paths/paths_scenes.h"
+
+namespace lucarne::gi::paths {
+namespace {
+
+/// A room with a patch of light on its floor, beside a wall.
+class MovedRaysInARoom : public testing::Test {
+ protected:
+    static bool is_lit(const glm::vec3& place) {
+        return place.z < .05f && place.x < .3f && std::abs(place.y - .5f) < .15f;
+    }
+    std::vector<glm::vec3> patch() const {
+        std::vector<glm::vec3> light(bake_->paths.groups.count(), glm::vec3(0.0f));
+        for (size_t i = 0; i < light.size(); ++i)
+            if (is_lit(bake_->planes[i].centre) && bake_->planes[i].normal.z > .9f)
+                light[i] = glm::vec3(1.0f);
+        return light;
+    }
+    /// Irradiance by the patch: nothing is in between.
+    double truth(const Surfel& at) const {
+        double sum = 0;
+        for (const Surfel& s : surfels_) {
+            if (!is_lit(s.position) || s.normal.z < .9f) continue;
+            const glm::vec3 away = s.position - at.position;
+            const float distance2 = glm::dot(away, away);
+            sum += std::max(glm::dot(away, at.normal), 0.0f) * std::max(-away.z, 0.0f) * s.area /
+                   (kPi * distance2 * distance2);
+        }
+        return sum;
+    }
+    SurfacePoint place_of(const Surfel& s) const {
+        return {.position = s.position, .normal = s.normal, .radius = 1e-3f};
+    }
+    const std::vector<Surfel> surfels_ = scenes::closed_box(1, 60, glm::vec3(.5f));
+    const std::shared_ptr<const PathsBake> bake_ = bake_of(input_of(surfels_, 200, 1024));
+};
+
+TEST_F(MovedRaysInARoom, KeepEvenLight) {
+    MovedRays moved(bake_);
+    moved.set(std::vector<glm::vec3>(bake_->paths.groups.count(), glm::vec3(2.0f)));
+    PointFinder finder(*bake_);
+    for (const Surfel& s : scenes::closed_box(1, 9, glm::vec3(.5f))) {
+        finder.find(s.position, s.normal);
+        EXPECT_NEAR(moved.factor(place_of(s), glm::vec3(0.0f), finder.shares()), 1, 1e-4);
+    }
+    EXPECT_EQ(moved.factor(place_of(surfels_[0]), glm::vec3(0.0f), {}), 1);
+    moved.set(std::vector<glm::vec3>(bake_->paths.groups.count(), glm::vec3(0.0f)));
+    EXPECT_EQ(moved.factor(place_of(surfels_[0]), glm::vec3(0.0f), finder.shares()), 1) << "in the dark";
+}
+
+// Points alone are off by .45 of the light in the mean, and with moved rays by .14.
+TEST_F(MovedRaysInARoom, BringThePatchNearerToWhatItGives) {
+    MovedRays moved(bake_);
+    const std::vector<glm::vec3> light = patch();
+    moved.set(light);
+    const LightPaths& paths = bake_->paths;
+    std::vector<glm::vec3> irradiance(paths.points.size(), glm::vec3(0.0f));
+    for (size_t i = 0; i < paths.rays.size(); ++i)
+        if (paths.rays[i] != kNone)
+            irradiance[i / paths.rays_a_point] += light[paths.rays[i]] / float(paths.rays_a_point);
+    PointFinder finder(*bake_);
+    double sum = 0, off = 0, off_before = 0;
+    for (const Surfel& s : surfels_) {
+        // The wall beside the patch, and its foot apart: there it is finer than the rays.
+        if (s.normal.x < .9f || std::abs(s.position.y - .5f) > .3f || s.position.z < .08f) continue;
+        ASSERT_TRUE(finder.find(s.position, s.normal));
+        const double mean = irradiance_of(finder.shares(), irradiance).x, exact = truth(s);
+        sum += exact;
+        off_before += std::abs(mean - exact);
+        off += std::abs(mean * moved.factor(place_of(s), glm::vec3(0.0f), finder.shares()) - exact);
+    }
+    ASSERT_GT(sum, 0);
+    EXPECT_LT(off, .4 * off_before) << off / sum << " " << off_before / sum;
+}
+
+TEST_F(MovedRaysInARoom, AreTheSameWhereverTheCoordinatesBegin) {
+    MovedRays moved(bake_);
+    moved.set(patch());
+    PointFinder finder(*bake_);
+    const glm::vec3 offset(16, -8, 4);
+    for (const Surfel& s : scenes::closed_box(1, 5, glm::vec3(.5f))) {
+        finder.find(s.position, s.normal);
+        SurfacePoint elsewhere = place_of(s);
+        elsewhere.position += offset;
+        const float here = moved.factor(place_of(s), glm::vec3(0.0f), finder.shares());
+        EXPECT_NEAR(moved.factor(elsewhere, offset, finder.shares()) / here, 1, 1e-2);
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::gi::paths
