@@ -49,6 +49,12 @@ uint32_t Groups::fitting(uint32_t leaf, float width) const {
     return group;
 }
 
+Groups GroupBuilder::take() {
+    Groups groups = std::move(joining_->groups);
+    joining_.reset();
+    return groups;
+}
+
 std::vector<GroupPlane> Groups::find_planes() const {
     std::vector<GroupPlane> found(count());
     for (uint32_t leaf = 0; leaf < leaves; ++leaf) {
@@ -154,6 +160,8 @@ bool GroupBuilder::divide() {
         cell.last_part = static_cast<uint32_t>(finer_.size());
     }
     if (level_ < levels_.size()) return true;
+    codes_ = {};
+    wanted_ = {};
     for (size_t i = 0; i < is_met_.size(); ++i)
         if (!is_met_[i]) leaf_of_[2 * (surfaces_.discs() + i)] = leaf_of_[surfaces_.parts()[i].side];
     airs_.resize(facts_.size());

@@ -79,7 +79,7 @@ class GroupBuilder {
     /// Joins some more leaves to larger groups. Returns whether any are left.
     bool join();
     /// Returns the groups once all are joined.
-    Groups take() { return std::move(joining_->groups); }
+    Groups take();
 
  private:
     /// What decides which groups are joined.
