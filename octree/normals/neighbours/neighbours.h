@@ -105,6 +105,8 @@ class ChunkNeighbours::Surroundings {
     double certain() const { return certain_; }
     /// Whether all points nearer than `radius` are known (or no more can be).
     bool knows(double radius) const;
+    /// The same, also where the search was given up.
+    bool surely_knows(double radius) const;
     /// A superset of the points within a radius of the site, in no particular order.
     struct View {
         const Tile& tile;

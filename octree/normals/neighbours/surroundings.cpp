@@ -133,6 +133,10 @@ bool ChunkNeighbours::Surroundings::knows(double radius) const {
     return radius <= halo_ || !of_.reaches_out(site_, radius * radius);
 }
 
+bool ChunkNeighbours::Surroundings::surely_knows(double radius) const {
+    return radius <= certain_ || !of_.reaches_out(site_, radius * radius);
+}
+
 ChunkNeighbours::Surroundings::View ChunkNeighbours::Surroundings::around(double radius) {
     const glm::dvec3 at = of_.sites_[site_];
     const auto view = [&](const Gathered& gathered) {

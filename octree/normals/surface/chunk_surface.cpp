@@ -13,6 +13,7 @@
 #include "octree/normals/surface/bent_rim.h"
 #include "octree/normals/surface/crease.h"
 #include "octree/normals/surface/earned.h"
+#include "octree/normals/surface/group.h"
 #include "octree/normals/surface/surface_sample.h"
 #include "octree/normals/surface/surface_share.h"
 #include "octree/tree/footprint.h"
@@ -135,6 +136,11 @@ class SiteEstimator {
             std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(nearest.count - 1));
         float crowding = 0;
         const double sparser = whole_cloud ? 0 : reach / step_near(site);
+        if (sparser > kThin && neighbours_.site_count() > kStepSites) {
+            const GroupSearch group = find_gap(around, reach, distances2_);
+            if (group.radius > 0) return group.radius;
+            if (group.alone) return leave_out(site);
+        }
         if (sparser > kSparse) {
             const double times = sparser > kVerySparse ? kFarWindow : kWindow;
             if (!around.knows(times * reach)) return times * reach;
@@ -439,7 +445,7 @@ class SiteEstimator {
     ChunkSurface& surface_;
     SurfaceFitter fitter_;
     Patch window_, further_;
-    std::vector<float> heights_;
+    std::vector<float> heights_, distances2_;
     std::vector<uint32_t> apart_;
     std::vector<SideNormal> sides_;
     std::vector<SiteLine> lines_;

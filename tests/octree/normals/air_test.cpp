@@ -201,6 +201,41 @@ TEST(Air, GroupsAroundACordAreDots) {
     EXPECT_NEAR(drawn(found, 0, first).area, 4, .08);
 }
 
+/// What a scanner saw of somebody who passed, or of another scanner. The points have a plane and are each
+/// other's neighbours.
+TEST(Air, SmallGroupsFarFromAllElseAreLeftOut) {
+    Random random(21);
+    Cloud cloud;
+    for (const double z : {0.0, 2.4}) add_wall(cloud, {0, 0, z}, {4, 0, 0}, {0, 2, 0}, 0.02, random);
+    const size_t ghost = add_wall(cloud, {2, 1.5, 1}, {0.2, 0, 0}, {0, 0, 0.35}, 0.05, random);
+    const size_t board = add_wall(cloud, {3.6, 0.4, 0.8}, {0, 1, 0}, {0, 0, 0.4}, 0.04, random);
+    ASSERT_GT(board - ghost, 24u);
+    // A crown of leaves: each is nearer to the others than two times its size.
+    const size_t leaves = cloud.points.size();
+    for (int leaf = 0; leaf < 120; ++leaf) {
+        const glm::dvec3 middle(0.1 + 0.5 * random.uniform(), 0.1 + 0.5 * random.uniform(),
+                                0.8 + 0.5 * random.uniform());
+        const double turn = 2 * std::numbers::pi * random.uniform();
+        const glm::dvec3 side(0.08 * std::cos(turn), 0.08 * std::sin(turn), 0);
+        for (int i = 0; i < 20; ++i)
+            cloud.points.push_back(middle + random.uniform() * side +
+                                   glm::dvec3(0, 0, 0.08 * random.uniform()));
+    }
+    cloud.normals.resize(cloud.points.size());
+    cloud.stations.resize(cloud.points.size());
+    for (const uint32_t chunks : {1u, 2u}) {
+        const Estimate found = estimate(cloud, {}, chunks);
+        const auto left_out = [&](size_t first, size_t end) {
+            return std::count(found.areas.begin() + static_cast<ptrdiff_t>(first),
+                              found.areas.begin() + static_cast<ptrdiff_t>(end), kStrayArea);
+        };
+        EXPECT_EQ(static_cast<size_t>(left_out(ghost, board)), board - ghost) << chunks;
+        EXPECT_EQ(left_out(board, leaves), 0) << chunks;
+        EXPECT_LE(left_out(leaves, cloud.points.size()), 24) << chunks << ": of 2400 points of leaves";
+        EXPECT_LE(left_out(0, ghost), 3) << chunks;
+    }
+}
+
 /// With little memory the halo of a chunk ends before the neighbours of a point in the middle of a room.
 TEST(Air, LonePointsAreOutliersWhereNotAllNeighboursAreKnown) {
     Random random(19);
