@@ -7,8 +7,8 @@ namespace lucarne::octree {
 namespace {
 
 /// How much wider than the group the gap around it is. In two real rooms 33 of 3.2 and 39 of 3.9 million
-/// points have such a gap, all of them in the air; with 1.5, three times as many in the second room, also on
-/// its surfaces. In a scan of a town with trees none has.
+/// points have such a gap, all of them in the air; with 1.5 more than twice as many in the second room. In a
+/// scan of a town with trees none has.
 constexpr double kGap = 2.0;
 
 /// Sets `distances2` to the squared distances of the points within `radius`, sorted; returns false if there
