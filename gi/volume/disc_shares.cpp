@@ -12,7 +12,7 @@
 namespace lucarne::gi::volume {
 namespace {
 
-/// What is less of a disc may be rounding.
+/// Smaller shares may come from rounding alone.
 constexpr float kLeastShare = 1e-6f;
 
 /// A border that cuts a disc: between cells number - 1 and number along an axis.
@@ -44,7 +44,8 @@ float disc_share(float first, float second, float cosine) {
     const float px = d1, py = (d2 - cosine * d1) / sine;
     const float ax = d1, ay = -h1, bx = cosine * d2 - sine * h2, by = sine * d2 + cosine * h2;
     float arc = std::atan2(bx * ay - by * ax, ax * bx + ay * by);
-    if (arc < 0) arc += 2 * kPi;
+    if (arc < -1e-6f) arc += 2 * kPi;
+    arc = std::max(arc, 0.0f);  // rounding, where the lines meet on the circle
     const float twice = arc - (px * ay - py * ax) - (bx * py - by * px);
     return std::clamp(twice / (2 * kPi), 0.0f, 1.0f);
 }
@@ -65,6 +66,8 @@ size_t few_parts(const glm::vec3& place, const glm::vec3& normal, float radius,
     }
     parts[0] = {first, 1, low, high};
     if (count == 0) return 1;
+    // A disc that ends so near to a border touches both voxels.
+    if (count == 1) borders[0].below = std::clamp(borders[0].below, 2 * kLeastShare, 1 - 2 * kLeastShare);
     float both = 0;  // the share before both borders
     if (count == 2) {
         const auto& [u, v] = borders;
@@ -86,11 +89,9 @@ size_t few_parts(const glm::vec3& place, const glm::vec3& normal, float radius,
         const float u = borders[0].below, v = borders[1].below;
         if (count == 1)
             part.share = i == 0 ? u : 1 - u;
-        else {
+        else
             part.share = i == 0 ? both : i == 1 ? v - both : i == 2 ? u - both : 1 - u - v + both;
-            if (!(part.share > kLeastShare)) continue;
-        }
-        parts[found++] = part;
+        if (part.share > kLeastShare) parts[found++] = part;
     }
     return found;
 }

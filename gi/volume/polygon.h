@@ -34,6 +34,7 @@ template <class T>
 BasicPolygon<T> cut(const BasicPolygon<T>& polygon, int axis, T sign, T low) {
     // Sutherland & Hodgman 1974, "Reentrant polygon clipping", for one plane.
     BasicPolygon<T> kept;
+    if (polygon.count == 0) return kept;
     const auto* from = &polygon.corners[0];
     T before = sign * (*from)[axis] - low;
     for (size_t i = 0; i < polygon.count; ++i) {

@@ -44,7 +44,7 @@ VoxelSet VoxelSums::means(const Grid& grid, const glm::dvec3& origin) const {
         set.voxels.push_back(
             {sum.cell, static_cast<float>(sum.area * face),
              length > kLeastNormal * sum.area ? glm::vec3(sum.normal / length) : glm::vec3(0.0f),
-             glm::vec3(sum.albedo / sum.area)});
+             sum.area > 0 ? glm::vec3(sum.albedo / sum.area) : glm::vec3(0.0f)});
     }
     return set;
 }

@@ -87,13 +87,16 @@ void VoxelMaker::mark(const Disc& disc, const glm::ivec3& cell, const glm::vec3&
     const std::atomic_ref<uint64_t> marked(blocks_[number]);
     const glm::vec3 corner(cell);
     constexpr auto kPerVoxel = static_cast<float>(kBlocksAlong);
-    uint64_t missing = ~marked.load(std::memory_order_relaxed);
-    if (disc.gap <= kWidestGap) {
-        missing &= blocks_in_box(kPerVoxel * (low - corner), kPerVoxel * (high - corner));
-        missing = blocks_near_plane(missing, disc.normal, kPerVoxel * (disc.place - corner));
+    const uint64_t missing = ~marked.load(std::memory_order_relaxed);
+    if (disc.gap > kWidestGap) {
+        if (missing != 0) marked.fetch_or(kAllBlocks, std::memory_order_relaxed);
+        return;
     }
-    if (missing == 0) return;
-    marked.fetch_or(disc.gap > kWidestGap ? kAllBlocks : blocks_of(part(), cell), std::memory_order_relaxed);
+    // Blocks beyond the box, which an octagon may touch, do not count: whether they are asked for depends on
+    // which disc comes first.
+    const uint64_t box = blocks_in_box(kPerVoxel * (low - corner), kPerVoxel * (high - corner));
+    if (blocks_near_plane(missing & box, disc.normal, kPerVoxel * (disc.place - corner)) == 0) return;
+    marked.fetch_or(box & blocks_of(part(), cell), std::memory_order_relaxed);
 }
 
 void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -108,8 +109,8 @@ class OutlineJudge {
         // The outline crosses the lines beside this one nearby, so that it lies across this line.
         const auto slope = slope_at(pair, what, spacing_m);
         if (!slope || std::abs(*slope) > 1) return;
-        const auto around =
-            std::clamp(static_cast<size_t>(std::ceil(kAround * spacing)), kLeastAround, kMostAround);
+        const auto around = static_cast<size_t>(
+            std::clamp(std::ceil(kAround * spacing), double{kLeastAround}, double{kMostAround}));
         if (pair.at < around || pair.at + 1 + around >= pair.length) return;
         long shift = 0;
         std::array<size_t, 2> present{};  // pixels to both sides that show the true surface

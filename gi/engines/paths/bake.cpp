@@ -212,7 +212,7 @@ class PathsPrecomputation final : public Precomputation {
 BakeCost cost_of(const EngineSettings& settings, uint64_t surfels) {
     constexpr double kSeconds = 45e-6, kSecondsARay = .12e-6;                 // a surfel
     constexpr double kMemory = 500, kMemoryARay = 1;                          // bytes
-    constexpr double kFile = 36, kMostOfFile = 100, kFileOfPointsARay = 8e4;  // bytes; of all points
+    constexpr double kFile = 38, kMostOfFile = 100, kFileOfPointsARay = 8e4;  // bytes; of all points
     const auto count = static_cast<double>(surfels), rays = static_cast<double>(settings[kGatherRays]);
     const double file = std::min(kFile * count + kFileOfPointsARay * rays, kMostOfFile * count);
     return {.cpu_seconds = count * (kSeconds + kSecondsARay * rays),

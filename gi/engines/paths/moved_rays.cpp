@@ -15,7 +15,7 @@ namespace {
 
 /// Rays that leave the scene meet something so many m away.
 constexpr float kFar = 1e4f;
-constexpr float kLeastCosine = 0.05f;
+constexpr float kGrazing = 0.05f;
 /// A ray counts at most so many times as much as at its point: what is near has been met by few.
 constexpr float kMostTimes = 20;
 /// Places at which all rays of a point count less than this in the mean are behind what they met.
@@ -31,8 +31,8 @@ float light_there(float sum, float times, float here) {
     const float rest = met * mean + (1 - met) * std::min(mean, here);
     return std::max(sum + rest * (1 - times), 0.0f);
 }
-/// Points whose rays are kept, of 32 bytes each: 64 MB of 256 rays a point.
-constexpr size_t kMostKept = 8192;
+/// Rays that are kept, of 32 bytes each: 64 MB.
+constexpr size_t kMostRays = size_t{1} << 21;
 
 }  // namespace
 
@@ -61,14 +61,13 @@ std::vector<MovedRays::Ray> MovedRays::make_rays(const GatheringPoint& point,
             const GroupPlane& plane = bake_->planes[group];
             const float cosine = -glm::dot(direction, plane.normal);
             const float to_middle = glm::dot(plane.centre - start, direction);
-            distance =
-                cosine > kLeastCosine ? glm::dot(start - plane.centre, plane.normal) / cosine : to_middle;
+            distance = cosine > kGrazing ? glm::dot(start - plane.centre, plane.normal) / cosine : to_middle;
             distance = std::max(
                 std::clamp(distance, to_middle - all.cell[group], to_middle + all.cell[group]), point.radius);
             normal = plane.normal;
         }
-        const float from = std::max(glm::dot(direction, point.normal), kLeastCosine),
-                    to = std::max(-glm::dot(direction, normal), kLeastCosine);
+        const float from = std::max(glm::dot(direction, point.normal), kGrazing),
+                    to = std::max(-glm::dot(direction, normal), kGrazing);
         rays[i] = {start + direction * distance,
                    (distance * distance + point.radius * point.radius) / (from * to), normal,
                    std::min(group, all.count())};
@@ -84,7 +83,7 @@ std::span<const MovedRays::Ray> MovedRays::rays_of(uint32_t point, std::vector<R
             std::span(paths.rays).subspan(size_t{point} * paths.rays_a_point, paths.rays_a_point));
     };
     std::call_once(kept_[point].once, [&] {
-        if (count_++ < kMostKept) kept_[point].rays = make();
+        if (count_.fetch_add(paths.rays_a_point) < kMostRays) kept_[point].rays = make();
     });
     if (!kept_[point].rays.empty()) return kept_[point].rays;
     own = make();
@@ -116,7 +115,8 @@ float MovedRays::factor(const SurfacePoint& place, const glm::vec3& offset,
         here += share.share * unmoved / count;
         there += share.share * light_there(sum / count, times / count, unmoved / count);
     }
-    return here > 0 ? there / here : 1;
+    const float times = there / here;  // of a damaged bake file perhaps no number
+    return here > 0 && std::isfinite(times) ? times : 1;
 }
 
 }  // namespace lucarne::gi::paths

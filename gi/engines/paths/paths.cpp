@@ -264,7 +264,7 @@ const MovedRays* PathsEngine::moved_rays(Frame& frame) {
 glm::vec3 PathsEngine::light_at(const Frame& frame, const SurfacePoint& place,
                                 std::span<const PointShare> about, const MovedRays* moved) const {
     const glm::vec3 light = irradiance_of(about, irradiance_);
-    if (!moved || about.empty()) return light;
+    if (!moved || about.empty() || frame.stopped()) return light;
     const glm::vec3 sky = sky_irradiance_.empty() ? glm::vec3(0.0f) : irradiance_of(about, sky_irradiance_);
     return sky + moved->factor(place, frame.bake_offset, about) * (light - sky);
 }

@@ -51,6 +51,8 @@ bool is_sound(const Groups& groups) {
         return false;
     for (const float area : groups.area)
         if (!(area >= 0) || !std::isfinite(area)) return false;
+    for (const float cell : groups.cell)
+        if (!(cell >= 0) || !std::isfinite(cell)) return false;
     if (!std::ranges::is_sorted(groups.level_ends)) return false;
     uint32_t begin = groups.leaves;
     for (const uint32_t end : groups.level_ends) {
@@ -114,7 +116,7 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     std::vector<glm::vec4> cube;
     LUCARNE_TRY(take(sections, "cube", cube));
     // Farther away, distances would be beyond floats.
-    const auto is_place = [](float at) { return std::abs(at) < 1e9f; };
+    const auto is_place = [](float at) { return std::abs(at) < 1e7f; };
     if (cube.size() != 1 || !is_place(cube[0].x) || !is_place(cube[0].y) || !is_place(cube[0].z) ||
         !(cube[0].w > 0) || !is_place(cube[0].w))
         return damaged("cube");

@@ -135,7 +135,8 @@ std::span<const CutOffPart> Surfaces::parts_of(Side side) const {
 float Surfaces::area_of(Side side) const {
     const size_t part = side / 2 - discs();
     const Side of_disc = is_part(side) ? parts_[part].side : side;
-    const float area = std::max(tracer_->surfels()[of_disc / 2].area, 0.0f);
+    const float own = tracer_->surfels()[of_disc / 2].area;
+    const float area = own > 0 && std::isfinite(own) ? own : 0;
     if (is_part(side)) return shares_[part] * area;
     float share = 1;
     for (uint32_t i = first_[side]; i < first_[side + 1]; ++i) share -= shares_[i];

@@ -232,8 +232,7 @@ class SiteEstimator {
         const float rim = std::numbers::sqrt2_v<float> / 2 * spacing;
         float area = 0;
         std::optional<glm::vec3> outward;
-        const bool open = cell.open();
-        if (open) {
+        if (cell.open()) {
             if (!around.knows(cell.widest_search())) return cell.widest_search();
             const auto view = around.around(std::min(cell.widest_search(), cell.widest_cut()));
             const size_t beyond = cell.cut_open(view.tile, view.centre, static_cast<float>(view.radius));
@@ -273,10 +272,10 @@ class SiteEstimator {
         std::optional<SiteLine> line;
         if (creased) line = line_at(site, *side, spacing);
         // The surface of a thin pipe has a border nearby as well as a crease.
-        if (border && !(creased && side->first.distance < border->distance)) line = border;
+        const float to_crease = creased ? side->first.distance : std::numeric_limits<float>::infinity();
+        if (border && border->distance <= to_crease) line = border;
         if (line) lines_.push_back(*line);
-        const float end = line ? line->distance : std::numeric_limits<float>::infinity();
-        const bool at_border = end < kOutermost * rim;
+        const bool at_border = std::min(to_crease, border ? border->distance : to_crease) < kOutermost * rim;
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
         if (whole != glm::vec3(0.0f)) {
             sides_.push_back({site, fit.normal, at_border ? side->layered : glm::vec3(0.0f)});

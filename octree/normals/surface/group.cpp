@@ -9,7 +9,7 @@ namespace {
 /// How much wider than the group the gap around it is. In two real rooms 33 of 3.2 and 39 of 3.9 million
 /// points have such a gap, all of them in the air; with 1.5 more than twice as many in the second room. In a
 /// scan of a town with trees none has.
-constexpr double kGap = 2.0;
+constexpr double kGapAround = 2.0;
 
 /// Sets `distances2` to the squared distances of the points within `radius`, sorted; returns false if there
 /// are more than kMostGroup.
@@ -36,17 +36,17 @@ bool take_distances(const ChunkNeighbours::Surroundings::View& view, double radi
 
 GroupSearch find_gap(ChunkNeighbours::Surroundings& around, double reach, std::vector<float>& distances2) {
     for (double end = reach, radius = 0;;) {
-        radius = kGap * end;
+        radius = kGapAround * end;
         if (!around.knows(radius)) return {false, radius};
         const auto view = around.around(radius);
         if (view.radius < radius || !take_distances(view, radius, distances2)) return {};
         end = reach;
         for (const float distance2 : distances2) {
             const double distance = std::sqrt(double{distance2});
-            if (distance > kGap * end) break;
+            if (distance > kGapAround * end) break;
             end = std::max(end, distance);
         }
-        if (kGap * end <= radius) return {around.surely_knows(radius), 0};
+        if (kGapAround * end <= radius) return {around.surely_knows(radius), 0};
     }
 }
 

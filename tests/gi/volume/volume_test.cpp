@@ -129,6 +129,7 @@ TEST(DiscShares, AreThoseOfTheOctagonsPartsAndTouchTheSameVoxels) {
         for (size_t k = 0; k < few; ++k) {
             const auto found = polygons.find(grid.number(parts[k].cell));
             ASSERT_NE(found, polygons.end()) << "a voxel that the octagon does not touch";
+            EXPECT_GT(parts[k].share, 0);
             // In the border of two voxels the octagon counts in both.
             if (i % 3 != 0) {
                 EXPECT_NEAR(parts[k].share, found->second / all, .03f);
@@ -184,6 +185,34 @@ TEST(Voxels, AreTheSameForAnyNumberOfThreads) {
         EXPECT_TRUE(std::ranges::equal(all.parts(voxel), one.parts(voxel), [](auto& a, auto& b) {
             return a.surfel == b.surfel && a.area == b.area;
         }));
+    // Which disc of a voxel comes first decides nothing, either.
+    const std::vector<FlatSurfel> turned(surfels.rbegin(), surfels.rend());
+    const Voxels reversed = divided(turned, grid);
+    ASSERT_TRUE(std::ranges::equal(reversed.occupied(), one.occupied()));
+    size_t other = 0;
+    for (uint32_t voxel = 0; voxel < one.occupied().size(); ++voxel) {
+        EXPECT_EQ(all.blocks(voxel), one.blocks(voxel));
+        other += reversed.blocks(voxel) != one.blocks(voxel);
+    }
+    EXPECT_EQ(other, 0u);
+}
+
+TEST(Voxels, WhatEndsBesideABorderHasNoEmptyParts) {
+    std::vector<FlatSurfel> surfels = flat::square(2, 1);
+    surfels.resize(1);
+    surfels[0].x = 1.2495f, surfels[0].y = 1.1f, surfels[0].z = 1.1f, surfels[0].radius = .2f;
+    const Grid grid{glm::vec3(0), 0.25f, glm::ivec3(12)};
+    for (const float ends : {1.2495f, 1.25f, 1.2499f}) {
+        surfels[0].x = ends - surfels[0].radius;
+        const Voxels voxels = divided(surfels, grid);
+        float sum = 0;
+        for (uint32_t voxel = 0; voxel < voxels.occupied().size(); ++voxel)
+            for (const SurfelPart& part : voxels.parts(voxel)) {
+                EXPECT_GT(part.area, 0) << ends;
+                sum += part.area;
+            }
+        EXPECT_NEAR(sum / surfels[0].area, 1, 1e-5) << ends;
+    }
 }
 
 /// Counts the air cells that are reached from a cell by steps to any of 26 neighbours.

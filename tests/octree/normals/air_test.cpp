@@ -213,13 +213,14 @@ TEST(Air, SmallGroupsFarFromAllElseAreLeftOut) {
     // A crown of leaves: each is nearer to the others than two times its size.
     const size_t leaves = cloud.points.size();
     for (int leaf = 0; leaf < 120; ++leaf) {
-        const glm::dvec3 middle(0.1 + 0.5 * random.uniform(), 0.1 + 0.5 * random.uniform(),
-                                0.8 + 0.5 * random.uniform());
+        const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+        const glm::dvec3 middle(0.1 + 0.5 * x, 0.1 + 0.5 * y, 0.8 + 0.5 * z);
         const double turn = 2 * std::numbers::pi * random.uniform();
         const glm::dvec3 side(0.08 * std::cos(turn), 0.08 * std::sin(turn), 0);
-        for (int i = 0; i < 20; ++i)
-            cloud.points.push_back(middle + random.uniform() * side +
-                                   glm::dvec3(0, 0, 0.08 * random.uniform()));
+        for (int i = 0; i < 20; ++i) {
+            const double along = random.uniform(), up = random.uniform();
+            cloud.points.push_back(middle + along * side + glm::dvec3(0, 0, 0.08 * up));
+        }
     }
     cloud.normals.resize(cloud.points.size());
     cloud.stations.resize(cloud.points.size());

@@ -33,7 +33,7 @@ TEST(PathsBake, AnInterruptedOneIsContinuedAsIfItHadNeverBeenStopped) {
     const BakeInput input = small_box();
     const auto whole = kPathsPrecomputes.make();
     finish(*whole, input);
-    for (const int taken : {1, 4, 12, 18, 24, 30}) {
+    for (const int taken : {1, 4, 12, 18, 24, 30, 40, 60}) {
         const auto first = kPathsPrecomputes.make();
         StepRunner<const BakeInput> runner;
         runner.start(first->steps(input));

@@ -65,7 +65,8 @@ TEST(Groups, CellsFitIntoTheNarrowestRay) {
     std::vector<RayHit> hits = {{0, .05f}, {2 * 64 * 64, .3f}};
     const Surfaces surfaces = surfaces_of(surfels);
     GroupBuilder builder(surfaces, hits, 0), bounded(surfaces, hits, .4f);
-    while (builder.divide() || bounded.divide()) continue;
+    while (builder.divide()) continue;
+    while (bounded.divide()) continue;
     while (builder.join()) continue;
     const Groups groups = builder.take();
     EXPECT_LE(groups.cell[groups.leaf_of[0]], .0625f);
@@ -173,7 +174,8 @@ TEST(Groups, ReachOverTheBackOfACurvedSurface) {
 TEST(Groups, OfNothingAreNone) {
     const Surfaces none = surfaces_of({});
     GroupBuilder builder(none, {}, 0);
-    while (builder.divide() || builder.join()) continue;
+    while (builder.divide()) continue;
+    while (builder.join()) continue;
     const Groups groups = builder.take();
     EXPECT_EQ(groups.count(), 0u);
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -94,6 +96,7 @@ TEST_F(MovedRaysInARoom, AreTheSameWhereverTheCoordinatesBegin) {
         SurfacePoint elsewhere = place_of(s);
         elsewhere.position += offset;
         const float here = moved.factor(place_of(s), glm::vec3(0.0f), finder.shares());
+        ASSERT_GT(here, 0);
         EXPECT_NEAR(moved.factor(elsewhere, offset, finder.shares()) / here, 1, 1e-2);
     }
 }
