@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -305,7 +306,7 @@ bool GroupBuilder::on_one_surface(const Facts& one, const Facts& other) const {
 }
 
 void GroupBuilder::begin_joining() {
-    joining_.emplace();
+    joining_ = std::make_unique<Joining>();
     joining_->groups = {.leaves = leaves(), .leaf_of = leaf_of_, .first = {0}};
     joining_->facts = facts_;
     const std::vector<uint32_t> airs = find_airs();

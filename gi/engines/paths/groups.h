@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -137,7 +137,7 @@ class GroupBuilder {
     std::vector<Side> sides_;   ///< of leaves, in their order
     std::vector<uint32_t> starts_{0};
     std::vector<uint32_t> airs_;  ///< of leaves: the next one of a tree, which ends at its root
-    std::optional<Joining> joining_;
+    std::unique_ptr<Joining> joining_;
 };
 
 }  // namespace lucarne::gi::paths
