@@ -113,7 +113,8 @@ class OutlineJudge {
             std::clamp(std::ceil(kAround * spacing), double{kLeastAround}, double{kMostAround}));
         if (pair.at < around || pair.at + 1 + around >= pair.length) return;
         long shift = 0;
-        std::array<size_t, 2> present{};  // pixels to both sides that show the true surface
+        std::array<size_t, 2>
+            present{};  // pixels to both sides that show the true surface or something before it
         for (size_t k = 0; k <= around; ++k)
             for (const bool upper : {false, true}) {
                 const size_t pixel = pair.pixel(upper ? pair.at + 1 + k : pair.at - k);
@@ -125,8 +126,9 @@ class OutlineJudge {
                 if (what == Kind::crease && is_step(truth, truth_[before], spacing_m)) return;
                 const glm::vec4& shown = shown_[pixel];
                 const bool nothing = !(truth.depth > 0);
-                present[upper] +=
-                    nothing || (shown.w > 0 && !is_step(truth, {shown.w, truth.normal}, spacing_m));
+                const bool farther =
+                    shown.w > truth.depth && is_step(truth, {shown.w, truth.normal}, spacing_m);
+                present[upper] += nothing || (shown.w > 0 && !farther);
                 shift += static_cast<long>(shows_first({shown.w, glm::dvec3(shown)}, a, b, what)) -
                          static_cast<long>(is_first);
             }
