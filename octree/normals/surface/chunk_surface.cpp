@@ -75,6 +75,9 @@ constexpr float kMostNarrow = 1.2f;
 /// Where the points beyond a crease lie up to so many spacings off a plane, they are one plane, and the cell
 /// ends where it begins. Else their points cut the cell, too: several planes, as at the corner of a box.
 constexpr float kRoughSide = 0.5f;
+/// A crease may be none if the points beyond it lie so many spacings off a plane, as on a pipe. Else a border
+/// gives the line only if it is this much nearer: at the corner of a box both are there.
+constexpr float kDoubtful = 0.15f, kMuchNearer = 0.5f;
 constexpr size_t kStepSites = 256;  ///< sites whose steps are compared: a piece of the Morton curve
 
 /// The median distance from one site to the next along the Morton curve, for each kStepSites sites.
@@ -273,7 +276,9 @@ class SiteEstimator {
         if (creased) line = line_at(site, *side, spacing);
         // The surface of a thin pipe has a border nearby as well as a crease.
         const float to_crease = creased ? side->first.distance : std::numeric_limits<float>::infinity();
-        if (border && border->distance <= to_crease) line = border;
+        const bool doubtful = creased && side->first.roughness > kDoubtful * spacing;
+        if (border && border->distance <= (doubtful || !creased ? 1.0f : kMuchNearer) * to_crease)
+            line = border;
         if (line) lines_.push_back(*line);
         const bool at_border = std::min(to_crease, border ? border->distance : to_crease) < kOutermost * rim;
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
