@@ -26,7 +26,7 @@ struct Border {
 
 float disc_share(float distance) {
     const float d = std::clamp(distance, -1.0f, 1.0f);
-    return 1 - (std::acos(d) - d * std::sqrt(1 - d * d)) / kPi;
+    return std::clamp(1 - (std::acos(d) - d * std::sqrt(1 - d * d)) / kPi, 0.0f, 1.0f);
 }
 
 float disc_share(float first, float second, float cosine) {
@@ -74,8 +74,9 @@ size_t few_parts(const glm::vec3& place, const glm::vec3& normal, float radius,
         const float size = across[u.axis] * across[v.axis];
         // Along a normal the disc reaches so little that lines in its plane mean nothing.
         if (std::min(reach[u.axis], reach[v.axis]) < 4 * kTouching) return 0;
-        both = std::clamp(disc_share(u.distance, v.distance, -normal[u.axis] * normal[v.axis] / size),
-                          std::max(u.below + v.below - 1, 0.0f), std::min(u.below, v.below));
+        // Rounding may leave nothing between the limits.
+        both = disc_share(u.distance, v.distance, -normal[u.axis] * normal[v.axis] / size);
+        both = std::min({std::max({both, u.below + v.below - 1, 0.0f}), u.below, v.below});
     }
     size_t found = 0;
     for (size_t i = 0; i < size_t{1} << count; ++i) {
