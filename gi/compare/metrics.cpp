@@ -44,17 +44,16 @@ double mean_of_channels(const glm::dvec3& v) {
     return (v.x + v.y + v.z) / 3;
 }
 
-/// Computes trimmed mean and percentile; reorders the values.
-void rank(std::vector<double>& errors, ImageMetrics& metrics) {
-    const size_t count = errors.size();
-    metrics.p99 = std::sqrt(nearest_rank(errors, 0.99));
-    metrics.trimmed_pixels = static_cast<uint64_t>(kTrimmed * static_cast<double>(count));
-    const size_t kept = count - metrics.trimmed_pixels;
-    if (kept < count)
-        std::nth_element(errors.begin(), errors.begin() + static_cast<ptrdiff_t>(kept), errors.end());
-    double sum = 0;
-    for (size_t i = 0; i < kept; ++i) sum += errors[i];
-    metrics.rel_mse_trimmed = sum / static_cast<double>(kept);
+size_t trimmed_count(size_t count) {
+    return static_cast<size_t>(kTrimmed * static_cast<double>(count));
+}
+
+/// Returns the mean without the worst share kTrimmed; reorders the values.
+double trimmed_mean(std::vector<double>& errors) {
+    const size_t kept = errors.size() - trimmed_count(errors.size());
+    const auto worst = errors.begin() + static_cast<ptrdiff_t>(kept);
+    if (worst != errors.end()) std::nth_element(errors.begin(), worst, errors.end());
+    return std::accumulate(errors.begin(), worst, 0.0) / static_cast<double>(kept);
 }
 
 }  // namespace
@@ -107,7 +106,9 @@ Result<ImageMetrics> compare_images(Pixels picture, Pixels reference, Selection 
     metrics.luminance_error = difference == 0 ? 0 : difference / metrics.reference_mean_luminance;
     metrics.rel_mse = relative / count;
     metrics.rmse = std::sqrt(squares / count);
-    rank(errors, metrics);
+    metrics.p99 = std::sqrt(nearest_rank(errors, 0.99));
+    metrics.trimmed_pixels = trimmed_count(errors.size());
+    metrics.rel_mse_trimmed = trimmed_mean(errors);
     return metrics;
 }
 
@@ -133,10 +134,7 @@ Result<HalvesError> compare_with_halves(Pixels picture, Pixels first, Pixels sec
     error.rel_mse = sum / count;
     error.standard_error = std::sqrt(std::max(0.0, squares / count - error.rel_mse * error.rel_mse) / count);
     error.reference_rel_mse = noise / count;
-    const auto worst = products.end() - static_cast<ptrdiff_t>(kTrimmed * count);
-    if (worst != products.end()) std::nth_element(products.begin(), worst, products.end());
-    error.rel_mse_trimmed =
-        std::accumulate(products.begin(), worst, 0.0) / static_cast<double>(worst - products.begin());
+    error.rel_mse_trimmed = trimmed_mean(products);
     return error;
 }
 
