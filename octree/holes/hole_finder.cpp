@@ -37,6 +37,61 @@ constexpr size_t kMostRim = 64;  ///< places of the rim from which a hole's colo
 constexpr std::array<glm::ivec2, 8> kAround = {
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
 
+/// What is known of a cell: nothing, that it is in a component, in a hole or its rim, or outside of the
+/// plane.
+constexpr uint8_t kNoLabel = 0, kOfComponent = 1, kTaken = 2, kOutside = 3;
+
+/// Marks of cells, with a margin around the plane's grid.
+class CellMarks {
+ public:
+    CellMarks(const PlaneGrid& grid, int margin)
+        : margin_(margin),
+          width_(grid.width() + 2 * margin),
+          height_(grid.height() + 2 * margin),
+          marked_(static_cast<size_t>(width_) * static_cast<size_t>(height_), 0) {}
+
+    /// Cells of the plane's grid; those of the margin are outside of it.
+    uint8_t& operator[](const glm::ivec2& cell) { return at(cell.x + margin_, cell.y + margin_); }
+    /// Marks the squares around all marked cells.
+    void spread(int reach) {
+        spread_along(reach, {1, 0});
+        spread_along(reach, {0, 1});
+    }
+    /// Marks what can be reached from the margin without passing a marked cell, instead of what was marked.
+    void mark_reached() {
+        std::vector<glm::ivec2> reached = {{0, 0}};
+        at(0, 0) = 2;
+        for (size_t next = 0; next < reached.size(); ++next)
+            for (size_t i = 0; i < 4; ++i) {
+                const glm::ivec2 to = reached[next] + kAround[i];
+                if (!inside(to) || at(to.x, to.y) != 0) continue;
+                at(to.x, to.y) = 2;
+                reached.push_back(to);
+            }
+        for (uint8_t& mark : marked_) mark = mark == 2;
+    }
+
+ private:
+    bool inside(const glm::ivec2& at) const {
+        return at.x >= 0 && at.y >= 0 && at.x < width_ && at.y < height_;
+    }
+    uint8_t& at(int x, int y) {
+        return marked_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)];
+    }
+    void spread_along(int reach, const glm::ivec2& step) {
+        const std::vector<uint8_t> before = marked_;
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x) {
+                if (!before[static_cast<size_t>(&at(x, y) - marked_.data())]) continue;
+                for (int i = -reach; i <= reach; ++i)
+                    if (const glm::ivec2 to = glm::ivec2(x, y) + i * step; inside(to)) at(to.x, to.y) = 1;
+            }
+    }
+
+    int margin_, width_, height_;
+    std::vector<uint8_t> marked_;
+};
+
 }  // namespace
 
 void HoleFinder::find(std::vector<Hole>& holes, std::vector<Tripod>& tripods) {
@@ -89,18 +144,32 @@ bool HoleFinder::is_core(const glm::ivec2& cell) const {
            });
 }
 
-void HoleFinder::find_components() {
-    label_.assign(static_cast<size_t>(grid_.width()) * static_cast<size_t>(grid_.height()), 0);
+void HoleFinder::find_outside() {
+    CellMarks marks(grid_, 2 * leak_ + 1);
+    for (int y = 0; y < grid_.height(); ++y)
+        for (int x = 0; x < grid_.width(); ++x) marks[{x, y}] = bounds(state({x, y}));
+    marks.spread(leak_);
+    marks.mark_reached();
+    marks.spread(leak_);
     for (int y = 0; y < grid_.height(); ++y)
         for (int x = 0; x < grid_.width(); ++x)
-            if (label_[grid_.index(x, y)] == 0 && is_core({x, y})) grow({x, y});
+            if (marks[{x, y}] && is_core({x, y})) label_[grid_.index(x, y)] = kOutside;
+}
+
+void HoleFinder::find_components() {
+    label_.assign(static_cast<size_t>(grid_.width()) * static_cast<size_t>(grid_.height()), kNoLabel);
+    components_.clear();
+    if (leak_ > 0) find_outside();
+    for (int y = 0; y < grid_.height(); ++y)
+        for (int x = 0; x < grid_.width(); ++x)
+            if (label_[grid_.index(x, y)] == kNoLabel && is_core({x, y})) grow({x, y});
 }
 
 void HoleFinder::grow(const glm::ivec2& seed) {
     Component component{.least = seed, .most = seed};
     const auto add = [&](const glm::ivec2& cell) {
         const size_t index = grid_.index(cell.x, cell.y);
-        label_[index] = 1;
+        label_[index] = kOfComponent;
         component.cells.push_back(static_cast<uint32_t>(index));
         component.hidden += grid_[index] == PlaneCell::hidden;
         component.least = glm::min(component.least, cell);
@@ -112,9 +181,12 @@ void HoleFinder::grow(const glm::ivec2& seed) {
         for (size_t i = 0; i < 4; ++i) {
             const glm::ivec2 to = from + kAround[i];
             if (!grid_.inside(to.x, to.y)) {
-                component.outer = true;
+                component.outer = leak_ == 0;
+                ++component.open;
+            } else if (label_[grid_.index(to.x, to.y)] == kOutside) {
+                ++component.open;
             } else if (is_core(to)) {
-                if (label_[grid_.index(to.x, to.y)] == 0) add(to);
+                if (label_[grid_.index(to.x, to.y)] == kNoLabel) add(to);
             } else {
                 const PlaneCell rim = state(to);
                 ++(rim == PlaneCell::crease ? component.crease
@@ -161,7 +233,8 @@ bool HoleFinder::is_below(const Component& component, const Tripod& tripod) cons
 }
 
 bool HoleFinder::is_hole(const Component& component) const {
-    if (component.cells.size() < kLeastCells) return false;
+    const auto leak = static_cast<size_t>(2 * leak_);  // holes are larger than the gaps in what bounds them
+    if (component.cells.size() < std::max(kLeastCells, leak * leak)) return false;
     const auto rim = static_cast<double>(component.surface + component.crease + component.open);
     const double surface = static_cast<double>(component.surface) / rim,
                  known = surface + static_cast<double>(component.crease) / rim,
@@ -227,38 +300,51 @@ void HoleFinder::enter_voxels() {
 }
 
 Hole HoleFinder::hole_of(const Component& component) {
-    Hole hole{.plane = plane_, .cells = component.cells, .creases = {}, .shores = {}, .rim = {}};
+    Hole hole{.plane = plane_, .cells = component.cells, .edges = {}, .creases = {}, .shores = {}, .rim = {}};
     std::vector<uint32_t> rim;
     const auto take = [&](uint32_t index, std::vector<uint32_t>& into) {
-        if (label_[index] == 2) return;
-        label_[index] = 2;  // not again for this hole
+        if (label_[index] == kTaken || label_[index] == kOutside) return;
+        label_[index] = kTaken;  // not again for this hole
         into.push_back(index);
     };
-    for (const uint32_t cell : component.cells) label_[cell] = 2;
-    std::vector<uint32_t> edge;
+    for (const uint32_t cell : component.cells) label_[cell] = kTaken;
     for (const uint32_t cell : component.cells)
         for (const glm::ivec2& step : kAround) {
             const glm::ivec2 to = grid_.cell_at(cell) + step;
             if (!grid_.inside(to.x, to.y)) continue;
             const auto index = static_cast<uint32_t>(grid_.index(to.x, to.y));
-            if (is_hidden(grid_[index]) || grid_[index] == PlaneCell::fringe) take(index, edge);
+            if (is_hidden(grid_[index]) || grid_[index] == PlaneCell::fringe) take(index, hole.edges);
+            if (grid_[index] == PlaneCell::surface) take(index, rim);  // beside a narrow hole
             if (grid_[index] == PlaneCell::crease) take(index, hole.creases);
         }
-    for (const uint32_t cell : edge)
+    for (const uint32_t cell : hole.edges)
         for (const glm::ivec2& step : kAround) {
             const glm::ivec2 to = grid_.cell_at(cell) + step;
             if (!grid_.inside(to.x, to.y)) continue;
             const auto index = static_cast<uint32_t>(grid_.index(to.x, to.y));
             if (grid_[index] == PlaneCell::surface) take(index, rim);
         }
-    hole.cells.insert(hole.cells.end(), edge.begin(), edge.end());
-    for (const uint32_t cell : rim) label_[cell] = 0;
-    for (const uint32_t cell : hole.creases) label_[cell] = 0;
+    for (const uint32_t cell : rim) label_[cell] = kNoLabel;
+    for (const uint32_t cell : hole.creases) label_[cell] = kNoLabel;
     std::ranges::sort(rim);
-    hole.shores = rim;
+    for (const uint32_t cell : rim) hole.shores.push_back({cell, quarters_beside_hole(cell)});
     const size_t step = std::max<size_t>(1, rim.size() / kMostRim);
     for (size_t i = 0; i < rim.size(); i += step) add_rim(hole, rim[i]);
     return hole;
+}
+
+uint8_t HoleFinder::quarters_beside_hole(uint32_t index) const {
+    uint8_t quarters = 0;
+    const glm::ivec2 cell = grid_.cell_at(index);
+    const auto taken = [&](int x, int y) {
+        return grid_.inside(x, y) && label_[grid_.index(x, y)] == kTaken;
+    };
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const int x = cell.x + (quarter & 1 ? 1 : -1), y = cell.y + (quarter & 2 ? 1 : -1);
+        if (taken(x, cell.y) || taken(cell.x, y) || taken(x, y))
+            quarters |= static_cast<uint8_t>(1 << quarter);
+    }
+    return quarters;
 }
 
 void HoleFinder::add_rim(Hole& hole, uint32_t index) const {

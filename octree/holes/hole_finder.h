@@ -19,12 +19,19 @@ struct RimPlace {
     glm::vec3 normal{0.0f}, colour{0.0f};
 };
 
+/// A cell of a hole's rim, and which quarters of it are beside the hole, as bits.
+struct Shore {
+    uint32_t cell = 0;
+    uint8_t quarters = 0;
+};
+
 /// A hole in a plane.
 struct Hole {
     size_t plane = 0;
     std::vector<uint32_t> cells;    ///< of the plane's grid
+    std::vector<uint32_t> edges;    ///< hidden cells beside these; they may be beyond a crease
     std::vector<uint32_t> creases;  ///< cells that a crease divides
-    std::vector<uint32_t> shores;   ///< cells of its rim: parts of them may be empty
+    std::vector<Shore> shores;      ///< cells of its rim: parts of them may be empty
     std::vector<RimPlace> rim;
 };
 
@@ -49,8 +56,10 @@ struct Component {
 /// Finds the holes of one plane.
 class HoleFinder {
  public:
-    HoleFinder(const PlaneGrid& grid, const Voxels& voxels, size_t plane, bool stations)
-        : grid_(grid), voxels_(voxels), plane_(plane), stations_(stations) {}
+    /// `leak`: a hole may be connected with the outside of the plane by gaps of up to twice so many cells in
+    /// what bounds it.
+    HoleFinder(const PlaneGrid& grid, const Voxels& voxels, size_t plane, bool stations, int leak = 0)
+        : grid_(grid), voxels_(voxels), plane_(plane), stations_(stations), leak_(leak) {}
 
     /// Finds the holes of the plane and, if no station is known, the tripods that stand on it.
     void find(std::vector<Hole>& holes, std::vector<Tripod>& tripods);
@@ -70,6 +79,10 @@ class HoleFinder {
     bool is_open(PlaneCell state) const {
         return state == PlaneCell::open || (narrow_ && state == PlaneCell::seen);
     }
+    /// Whether surface or a crease is at a cell.
+    static bool bounds(PlaneCell state) {
+        return state == PlaneCell::surface || state == PlaneCell::fringe || state == PlaneCell::crease;
+    }
     static bool is_hidden(PlaneCell state) { return state == PlaneCell::hidden || state == PlaneCell::seen; }
     bool hidden(const glm::ivec2& cell) const {
         return grid_.inside(cell.x, cell.y) && is_hidden(state(cell));
@@ -80,6 +93,9 @@ class HoleFinder {
     /// around. In the narrow pass each cell that is hidden from all stations counts, also beside surface.
     bool is_core(const glm::ivec2& cell) const;
 
+    /// Finds the hidden cells to which a square of 2 leak + 1 cells leads from the rim of the grid without
+    /// touching the plane's surface or a crease.
+    void find_outside();
     void find_components();
     void grow(const glm::ivec2& seed);
 
@@ -116,6 +132,8 @@ class HoleFinder {
     void enter_voxels();
 
     Hole hole_of(const Component& component);
+    /// Returns which quarters of a cell are beside cells of the hole that is being made.
+    uint8_t quarters_beside_hole(uint32_t index) const;
     /// Adds the mean of the voxels at a cell of the rim.
     void add_rim(Hole& hole, uint32_t index) const;
     bool steep(const Hole& hole, const Component& component) const;
@@ -124,6 +142,7 @@ class HoleFinder {
     const Voxels& voxels_;
     const size_t plane_;
     const bool stations_;
+    const int leak_;
     bool narrow_ = false;
     float behind_ = -1;  ///< the sign of heights behind the plane
     std::vector<uint8_t> label_;

@@ -4,8 +4,10 @@
 #include "octree/holes/holes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -23,6 +25,8 @@ constexpr size_t kLeastPoints = 1000, kMostPlanes = 256;
 constexpr float kCellSpacings = 2.2f;  ///< edge of a cell in spacings of the sample
 /// What a point covers around it with its share and with its disc, in its own spacings; at most, in cells.
 constexpr float kCovered = 0.6f, kDisc = 1.2f, kMostCovered = 6;
+/// Surfels at a crease may stand so far beyond it, in the edges of their squares, to leave no gap.
+constexpr float kBeyondCrease = 0.4f;
 constexpr float kCreaseReach = 2.5f;  ///< m: so far a plane is continued to a crease
 constexpr uint64_t kMostSteps = uint64_t{1} << 25;
 constexpr double kLeastExtent = 0.05, kMostExtent = 1e5;  ///< m, of the sample
@@ -32,6 +36,9 @@ constexpr double kLeastExtent = 0.05, kMostExtent = 1e5;  ///< m, of the sample
 constexpr size_t kMostFine = size_t{1} << 15;
 /// Stations are known if so many of the points have one: others may have been received from anywhere.
 constexpr double kKnowStations = 0.95;
+/// What bounds a hole may have gaps of twice so many cells, first none: a shadow that is in part narrow, or a
+/// crease whose other plane is missing for a while, leads to the outside of the plane.
+constexpr std::array kLeaks = {0, 3, 6};
 
 float median_spacing(const HoleSample& sample) {
     std::vector<float> areas;
@@ -63,11 +70,13 @@ FillPoint interpolated(const Hole& hole, const PlaneGrid& grid, const glm::vec2&
     return point;
 }
 
-/// Whether a place is on the same side of all creases nearby as another.
-bool same_side(const std::vector<CreasePlane>& creases, const glm::vec3& a, const glm::vec3& b, float near) {
+/// Whether a place is on the same side of all creases within `near` as another, or `beyond` one at most, m.
+bool same_side(const std::vector<CreasePlane>& creases, const glm::vec3& a, const glm::vec3& b, float near,
+               float beyond) {
     return std::ranges::all_of(creases, [&](const CreasePlane& crease) {
         const float here = glm::dot(a - crease.centre, crease.normal);
-        return std::abs(here) > near || here * glm::dot(b - crease.centre, crease.normal) > 0;
+        const float there = glm::dot(b - crease.centre, crease.normal);
+        return std::abs(here) > near || (there > 0 ? here : -here) > -beyond;
     });
 }
 
@@ -97,12 +106,16 @@ class HoleSearch {
     FoundHoles run() {
         std::vector<Hole> holes;
         std::vector<Tripod> tripods;
-        for (size_t i = 0; i < grids_.size(); ++i)
-            HoleFinder(grids_[i], voxels_, i, know_stations_).find(holes, tripods);
-        if (know_stations_) find_narrow(holes);
-        find_below(tripods, holes);
+        if (know_stations_) {
+            for (const int leak : kLeaks) find_wide(leak, holes);
+            for (const int leak : kLeaks) find_narrow(leak, holes);
+        } else {
+            for (size_t i = 0; i < grids_.size(); ++i)
+                HoleFinder(grids_[i], voxels_, i, false).find(holes, tripods);
+            find_below(tripods, holes);
+        }
         const auto cells = [](const Hole& hole) {
-            return hole.cells.size() + hole.creases.size() + hole.shores.size();
+            return hole.cells.size() + hole.edges.size() + hole.creases.size() + hole.shores.size();
         };
         std::ranges::stable_sort(holes, std::greater<>(), cells);
         size_t all = 0, kept = 0;
@@ -126,14 +139,25 @@ class HoleSearch {
                 mark_creases(grids_[plane], grids_[other], kCreaseReach, kMostSteps - work_, creases_[plane]);
     }
 
-    void close(const std::vector<Hole>& holes) {
+    void close(std::span<const Hole> holes) {
         for (const Hole& hole : holes)
-            for (const uint32_t cell : hole.cells) grids_[hole.plane].set(cell, PlaneCell::surface);
+            for (const auto* cells : {&hole.cells, &hole.edges})
+                for (const uint32_t cell : *cells) grids_[hole.plane].set(cell, PlaneCell::surface);
     }
 
-    void find_narrow(std::vector<Hole>& holes) {
-        close(holes);
-        for (size_t i = 0; i < grids_.size(); ++i) HoleFinder(grids_[i], voxels_, i, true).find_narrow(holes);
+    void find_wide(int leak, std::vector<Hole>& holes) {
+        std::vector<Tripod> none;
+        const size_t known = holes.size();
+        for (size_t i = 0; i < grids_.size(); ++i)
+            HoleFinder(grids_[i], voxels_, i, true, leak).find(holes, none);
+        close(std::span(holes).subspan(known));
+    }
+
+    void find_narrow(int leak, std::vector<Hole>& holes) {
+        const size_t known = holes.size();
+        for (size_t i = 0; i < grids_.size(); ++i)
+            HoleFinder(grids_[i], voxels_, i, true, leak).find_narrow(holes);
+        close(std::span(holes).subspan(known));
     }
 
     /// Finds the holes of walls below tripods. Their floors, which are closed now, bound them.
@@ -170,7 +194,9 @@ class HoleSearch {
             const float pitch = 1 / static_cast<float>(along);
             const glm::vec2 part(static_cast<float>(i % along) + 0.5f, static_cast<float>(i / along) + 0.5f);
             const glm::vec2 flat = grid.flat_of(grid.cell_at(cell), pitch * part);
-            if (divided && !same_side(creases_[hole.plane], grid.place_of(flat), inside, cell_)) return;
+            const float beyond = kBeyondCrease * pitch * cell_;
+            if (divided && !same_side(creases_[hole.plane], grid.place_of(flat), inside, cell_, beyond))
+                return;
             points.push_back(interpolated(hole, grid, flat));
             points.back().area = pitch * pitch * cell_ * cell_;
         };
@@ -178,12 +204,14 @@ class HoleSearch {
             for (int i = 0; i < parts * parts; ++i) add_point(cell, i, parts, divided);
         };
         for (const uint32_t cell : hole.cells) add(cell, false);
+        for (const uint32_t cell : hole.edges) add(cell, true);
         for (const uint32_t cell : hole.creases) add(cell, true);
         // The points of the sample are sparser than those of the scan, whose small discs may end earlier.
         if (!shores) return;
-        for (const uint32_t cell : hole.shores)
+        for (const Shore& shore : hole.shores)
             for (int quarter = 0; quarter < 4; ++quarter)
-                if (!grid.has_point(cell, quarter)) add_point(cell, quarter, 2, true);
+                if (shore.quarters >> quarter & 1 && !grid.has_point(shore.cell, quarter))
+                    add_point(shore.cell, quarter, 2, true);
     }
 
     const HoleLimits limits_;

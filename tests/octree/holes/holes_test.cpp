@@ -99,17 +99,42 @@ TEST(Holes, ACornerInAShadowIsFilled) {
 }
 
 TEST(Holes, TheShadowOfARailIsFilledThoughItIsNarrowerThanThreeCells) {
-    std::vector<Wall> walls = room();
-    add_box(walls, {0, 0.5f, 1.1f}, {6, 0.57f, 1.17f}, false);
-    const std::vector<glm::vec3> stations{{3, 2.5f, 1.7f}};
-    const auto points = fill_points(scan_walls(walls, stations));
-    const float expected = unseen_area(walls, stations, 4, 400);
-    EXPECT_GT(expected, 0.4f);
-    float filled = 0;
-    for (const FillPoint& point : points)
-        if (std::abs(point.position.y) < 0.02f) filled += point.area;
-    EXPECT_NEAR(filled, expected, 0.15f * expected);
-    EXPECT_EQ(count(points, [&](const FillPoint& p) { return distance_to(walls, p.position) > 0.02f; }), 0);
+    for (const float thick : {0.07f, 0.08f, 0.1f, 0.12f}) {
+        std::vector<Wall> walls = room();
+        add_box(walls, {0, 0.5f, 1.1f}, {6, 0.5f + thick, 1.1f + thick}, false);
+        const std::vector<glm::vec3> stations{{3, 2.5f, 1.7f}};
+        const auto points = fill_points(scan_walls(walls, stations));
+        const float expected = unseen_area(walls, stations, 4, 400);
+        float filled = 0;
+        for (const FillPoint& point : points)
+            if (std::abs(point.position.y) < 0.02f) filled += point.area;
+        EXPECT_GT(expected, 0.6f);
+        EXPECT_NEAR(filled, expected, 0.15f * expected) << thick;
+        EXPECT_EQ(count(points, [&](const FillPoint& p) { return distance_to(walls, p.position) > 0.02f; }),
+                  0);
+    }
+}
+
+/// A block's shadow on a wall that stands free, and of a pole over the block up to the wall's end. `pole`:
+/// how wide it is, m. Returns the filled and the hidden area of the wall.
+glm::vec2 shadow_of_a_block(float pole) {
+    std::vector<Wall> walls{{{0, 0, 0}, 6.0f * kX, 5.0f * kY}, {{6, 0, 0}, 3.0f * kZ, 5.0f * kY}};
+    add_box(walls, {4.8f, 2, 0}, {5.3f, 3, 1.2f}, false);
+    add_box(walls, {5, 2.4f, 1.2f}, {5 + pole, 2.4f + pole, 4}, false);
+    const std::vector<glm::vec3> stations{{1.5f, 2.5f, 1.6f}};
+    glm::vec2 area(0, unseen_area(walls, stations, 1));
+    for (const FillPoint& point : fill_points(scan_walls(walls, stations)))
+        if (std::abs(point.position.x - 6) < 0.02f) area.x += point.area;
+    return area;
+}
+
+TEST(Holes, AShadowIsFilledThoughANarrowPartOfItReachesTheEndOfTheWall) {
+    for (const float pole : {0.05f, 0.15f, 0.3f}) {
+        const glm::vec2 area = shadow_of_a_block(pole);
+        EXPECT_GT(area.y, 1.5f);
+        EXPECT_NEAR(area.x, area.y, 0.15f * area.y) << pole;
+    }
+    EXPECT_EQ(shadow_of_a_block(0.9f).x, 0) << "the wall may end there";
 }
 
 TEST(Holes, AWindowThatAStationLooksThroughStaysOpen) {
