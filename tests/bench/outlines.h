@@ -42,15 +42,18 @@ class OutlineJudge {
  public:
     using Pixel = TrueView::Pixel;
     /// `shown`: what the scan shows, as `lucarne render --gbuffer` writes it. `spacing`: returns that of the
-    /// scan's points at a pixel of the true surface, in pixels; 0: not known.
+    /// scan's points at a pixel of the true surface, in pixels; 0: not known. `scanned`: returns whether the
+    /// scan has a point of the true surface at a pixel, or within so many pixels of it.
     /// `pixel_size`: of a pixel at a depth of one metre, m.
     OutlineJudge(const std::vector<Pixel>& truth, const std::vector<glm::vec4>& shown, uint32_t width,
-                 double pixel_size, std::function<double(size_t)> spacing)
+                 double pixel_size, std::function<double(size_t)> spacing,
+                 std::function<bool(size_t, double)> scanned)
         : truth_(truth),
           shown_(shown),
           width_(width),
           pixel_size_(pixel_size),
-          spacing_(std::move(spacing)) {}
+          spacing_(std::move(spacing)),
+          scanned_(std::move(scanned)) {}
 
     Outlines judge() const {
         Outlines found;
@@ -67,6 +70,7 @@ class OutlineJudge {
     static constexpr double kStep = 4;                            ///< spacings between the surfaces at a step
     static constexpr double kLeastStep = .05;                     ///< m
     static constexpr double kAround = 2;                          ///< spacings
+    static constexpr double kScanned = 1.5;                       ///< spacings: a point is as near
     static constexpr double kLeastShift = 2;                      ///< pixels: shifts are whole pixels
     static constexpr size_t kLeastAround = 3, kMostAround = 256;  ///< pixels
 
@@ -124,6 +128,7 @@ class OutlineJudge {
                     return;  // another is near
                 const size_t before = pair.pixel(upper ? pair.at + 1 + k - (k > 0) : pair.at - k + (k > 0));
                 if (what == Kind::crease && is_step(truth, truth_[before], spacing_m)) return;
+                if (what == Kind::crease && k == around && !scanned_(pixel, kScanned * spacing)) return;
                 const glm::vec4& shown = shown_[pixel];
                 const bool nothing = !(truth.depth > 0);
                 const bool farther =
@@ -180,6 +185,7 @@ class OutlineJudge {
     size_t width_;
     double pixel_size_;
     std::function<double(size_t)> spacing_;
+    std::function<bool(size_t, double)> scanned_;
 };
 
 /// The spacing of a scan's points at places on its surface: the root of the nearest point's share.
@@ -192,22 +198,37 @@ class SpacingMap {
     }
     /// Returns 0 where no point is near.
     double at(const glm::dvec3& place) const {
-        const glm::ivec3 middle = cell(glm::vec3(place));
         double nearest = kCell * kCell, spacing = 0;
+        visit(place, [&](const gi::Surfel& surfel, double squared) {
+            if (squared < nearest) nearest = squared, spacing = std::sqrt(surfel.area);
+        });
+        return spacing;
+    }
+    /// Whether a point lies within `reach` (m, .1 at most) of a place, in a surface with about this normal.
+    bool has_point(const glm::dvec3& place, const glm::dvec3& normal, double reach) const {
+        bool found = false;
+        visit(place, [&](const gi::Surfel& surfel, double squared) {
+            found |= squared < reach * reach && plane_angle(glm::dvec3(surfel.normal), normal) < kSamePlane;
+        });
+        return found;
+    }
+
+ private:
+    static constexpr double kCell = .1;       ///< m
+    static constexpr double kSamePlane = 30;  ///< degrees
+    /// Calls `see` with each surfel in the cells around a place and its squared distance, m^2.
+    template <typename See>
+    void visit(const glm::dvec3& place, const See& see) const {
+        const glm::ivec3 middle = cell(glm::vec3(place));
         for (int i = 0; i < 27; ++i) {
             const auto found = cells_.find(key(middle + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
             if (found == cells_.end()) continue;
             for (const uint32_t number : found->second) {
                 const glm::dvec3 away = glm::dvec3(surfels_[number].position) - place;
-                if (dot(away, away) < nearest)
-                    nearest = dot(away, away), spacing = std::sqrt(surfels_[number].area);
+                see(surfels_[number], dot(away, away));
             }
         }
-        return spacing;
     }
-
- private:
-    static constexpr double kCell = .1;  ///< m
     static glm::ivec3 cell(const glm::vec3& place) { return glm::ivec3(glm::floor(place / float{kCell})); }
     static uint64_t key(const glm::ivec3& cell) {
         uint64_t joined = 0;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -29,8 +30,12 @@ Views views(const TrueView::Pixel& first, const TrueView::Pixel& second, uint32_
     return made;
 }
 
-Outlines judged(const Views& views) {
-    return OutlineJudge(views.truth, views.shown, kSide, .001, [](size_t) { return kSpacing; }).judge();
+Outlines judged(
+    const Views& views,
+    const std::function<bool(size_t, double)>& scanned = [](size_t, double) { return true; }) {
+    return OutlineJudge(
+               views.truth, views.shown, kSide, .001, [](size_t) { return kSpacing; }, scanned)
+        .judge();
 }
 
 TEST(Outlines, StepsOfDepthMayBeShiftedByHalfASpacing) {
@@ -60,6 +65,24 @@ TEST(Outlines, WhatTheScanLacksIsLeftOut) {
     Views none = views(wall, floor, 0);
     for (glm::vec4& pixel : none.shown) pixel = glm::vec4(0.0f);
     EXPECT_EQ(judged(none).creases.all, 0);
+    // No scanner saw the wall, so the floor seems to go on: at the foot of the wall it is as far away.
+    const Views open = views(wall, floor, 0);
+    EXPECT_EQ(judged(open, [](size_t pixel, double) { return pixel % kSide >= kSide / 2; }).creases.all, 0);
+}
+
+TEST(Outlines, PointsOfAPlaneAreFoundNearAPlace) {
+    std::vector<gi::Surfel> surfels(1);
+    surfels[0].position = glm::vec3(1.02f, 2, 3);
+    surfels[0].normal = glm::vec3(0, 0, -1);
+    surfels[0].radius = .01f;
+    surfels[0].area = .0004f;
+    const SpacingMap map(surfels);
+    const glm::dvec3 place(1, 2, 3), up(0, 0, 1);
+    EXPECT_NEAR(map.at(place), .02, 1e-6);
+    EXPECT_TRUE(map.has_point(place, up, .03));
+    EXPECT_FALSE(map.has_point(place, up, .01));
+    EXPECT_FALSE(map.has_point(place, {1, 0, 0}, .03));
+    EXPECT_EQ(map.at({1.5, 2, 3}), 0);
 }
 
 }  // namespace

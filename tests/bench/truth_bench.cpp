@@ -206,13 +206,19 @@ Result<void> outlines(const BenchRun& run, const std::string& what, const Scan& 
     const TrueView view(*truth.geometry, truth.camera, {side, side}, 0);
     const gi::CameraView camera = gi::camera_view(truth.camera, {side, side}, {});
     const double pixel_size = 2 * glm::length(glm::dvec3(camera.up)) / side;
+    const auto place = [&](size_t pixel) {
+        return glm::dvec3(camera.origin) + view.ray(pixel) * view.pixels()[pixel].depth;
+    };
     const auto spacing = [&](size_t pixel) {
         const double depth = view.pixels()[pixel].depth;
-        const glm::dvec3 place = glm::dvec3(camera.origin) + view.ray(pixel) * depth;
-        return depth > 0 ? spacings.at(place) / (pixel_size * depth) : 0;
+        return depth > 0 ? spacings.at(place(pixel)) / (pixel_size * depth) : 0;
+    };
+    const auto scanned = [&](size_t pixel, double reach) {
+        const TrueView::Pixel& true_surface = view.pixels()[pixel];
+        return spacings.has_point(place(pixel), true_surface.normal, reach * pixel_size * true_surface.depth);
     };
     const bench::Outlines found =
-        bench::OutlineJudge(view.pixels(), seen.pixels, side, pixel_size, spacing).judge();
+        bench::OutlineJudge(view.pixels(), seen.pixels, side, pixel_size, spacing, scanned).judge();
     const auto print = [&](const std::string& measure, const bench::OutlineLength& length, double target) {
         if (!(length.all > 0)) return;
         const double share = 100 * length.kept / length.all;
