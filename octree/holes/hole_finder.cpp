@@ -13,6 +13,7 @@ namespace {
 
 // What a hole's rim has to consist of, in shares of its length.
 constexpr double kLeastSurface = 0.15, kLeastKnown = 0.8;
+constexpr double kLeastKnownLeaking = 0.9;  ///< if it is connected with the outside by a gap
 constexpr size_t kLeastCells = 4;
 constexpr double kLeastHidden = 0.5;  ///< of a hole's cells
 constexpr double kMostOfPlane = 0.5;  ///< a hole's area, in that of the plane's points
@@ -241,8 +242,8 @@ bool HoleFinder::is_hole(const Component& component) const {
                  share = static_cast<double>(component.cells.size()) / static_cast<double>(grid_.covered());
     const double hidden = static_cast<double>(component.hidden) / static_cast<double>(component.cells.size());
     if (stations_)
-        return surface >= kLeastSurface && known >= kLeastKnown && hidden >= kLeastHidden &&
-               share <= kMostOfPlane;
+        return surface >= kLeastSurface && known >= (leak_ > 0 ? kLeastKnownLeaking : kLeastKnown) &&
+               hidden >= kLeastHidden && share <= kMostOfPlane;
     const bool floor = is_floor();
     if (floor && disc_of(component).round)
         return surface >= kLeastSurfaceDisc && known >= kLeastSurfaceBlind && share <= kMostOfPlane &&

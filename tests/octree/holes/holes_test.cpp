@@ -374,5 +374,17 @@ TEST(Holes, LightOfTheCornellBoxStaysInside) {
     EXPECT_LT(filled.through, 0.7 * open.through);
 }
 
+/// Walls and vaults that end in the air, and windows in them, must not be continued.
+TEST(Holes, LittleOfTheNaveIsInvented) {
+    const Scan scan = scan_of("nave", 400000);
+    NormalOptions options;
+    options.stations = scan.stations;
+    const Estimate found = estimate(scan.cloud, options);
+    const HoleErrors filled = hole_errors("nave", scan, found, fill_points(sample_of(scan, found)), 1000);
+    std::printf("nave: %.2f m2 filled, %.2f m2 of it off\n", filled.filled, filled.off);
+    EXPECT_GT(filled.filled, 7);
+    EXPECT_LT(filled.off, 0.19 * filled.filled) << "of vaults, mostly, whose holes are closed by planes";
+}
+
 }  // namespace
 }  // namespace lucarne::octree
