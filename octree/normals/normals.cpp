@@ -28,10 +28,9 @@ constexpr double kSilhouette = 0.1;
 constexpr double kCurtain = 0.3;
 constexpr float kRough = 64;  ///< crowding from which kCurtain is used
 
-/// Least |n.n'| of a side of a crease and its whole neighbourhood where no station is known: 33 degrees. Some
-/// sides that turn farther are not the point's own, and only .969 of the nave's normals would face the right
-/// way.
-constexpr float kLeastTurn = 0.84f;
+/// Least |n.n'| of a side of a crease and its whole neighbourhood where no station is known: 53 degrees, so
+/// that both sides of a right-angled edge count. Sides that turn farther face any way.
+constexpr float kLeastTurn = 0.6f;
 /// Below this |n.n'| the whole neighbourhood does not tell which way a side faces, but its
 /// station does.
 constexpr float kOwnTurn = 0.5f;
@@ -77,7 +76,8 @@ void narrow_at_corners(ChunkSurface& surface, std::span<const glm::dvec3> ray_of
 }
 
 /// Drops the sides of creases that turn far and have no station, with their lines. Others are oriented by
-/// their own normal where that of the whole neighbourhood would mislead.
+/// their own normal where that of the whole neighbourhood would mislead. Only where normals are estimated:
+/// stated ones face the right way, and a line whose side is in another plane is left out later.
 void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
     auto line = surface.lines.begin();
     std::erase_if(surface.sides, [&](const SideNormal& side) {
@@ -134,7 +134,7 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
         take_seen_ends(surface, rays);
         narrow_at_corners(surface, rays);
     }
-    drop_doubtful_sides(surface, rays);
+    if (options.normals) drop_doubtful_sides(surface, rays);
     agree_on_lines(neighbours, surface);
     ChunkOrientation orientation;
     if (options.normals) {

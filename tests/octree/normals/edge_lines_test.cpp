@@ -95,6 +95,32 @@ std::vector<std::pair<glm::dvec3, glm::dvec3>> faces_at_edges() {
     return all;
 }
 
+/// Shares of the outline of a cube: what discs reach to a quarter of a spacing, and what none of them
+/// reaches.
+struct Outline {
+    double right = 0, short_of_it = 0;
+};
+Outline outline_of(const std::vector<NearEdge>& near, const Cloud& cloud, const Estimate& found) {
+    // Each of the 12 edges is seen from both of its faces: the gap of a single disc is a small share of all.
+    constexpr int kPlacesAnEdge = 500, kOutlinePlaces = 24 * kPlacesAnEdge;
+    int right = 0, short_of_it = 0;
+    for (const auto& [normal, outward] : faces_at_edges()) {
+        std::vector<NearEdge> one;
+        for (const NearEdge& n : near) {
+            const bool parallel = glm::dot(cloud.normals[n.point], normal) == 1;
+            if (parallel && n.outward == outward) one.push_back(n);
+        }
+        for (int i = 0; i < kPlacesAnEdge; ++i) {
+            const double along = 0.1 + 0.8 * i / kPlacesAnEdge;
+            double reach = -1;
+            for (const NearEdge& n : one) reach = std::max(reach, reach_at(n, cloud, found, along));
+            right += std::abs(reach) < 0.25 * kBoxSpacing;
+            short_of_it += reach < -0.1 * kBoxSpacing;
+        }
+    }
+    return {static_cast<double>(right) / kOutlinePlaces, static_cast<double>(short_of_it) / kOutlinePlaces};
+}
+
 TEST(EdgeLines, MostOfABoxsOutlineIsRightToAQuarterOfASpacing) {
     // What is missing are discs whose planes lie across the edge, which no line of their neighbours fits.
     // Noise turns the planes, so that some discs end before the edge.
@@ -106,24 +132,7 @@ TEST(EdgeLines, MostOfABoxsOutlineIsRightToAQuarterOfASpacing) {
         const auto [cloud, options] = scanned(noise * kBoxSpacing, false);
         const Estimate found = estimate(cloud, options);
         const auto near = near_edges(cloud);
-        // Each of the 12 edges is seen from both of its faces: the gap of a single disc is a small share of
-        // all.
-        constexpr int kPlacesAnEdge = 500, kOutlinePlaces = 24 * kPlacesAnEdge;
-        int right = 0, short_of_it = 0;
-        for (const auto& [normal, outward] : faces_at_edges()) {
-            std::vector<NearEdge> one;
-            for (const NearEdge& n : near) {
-                const bool parallel = glm::dot(cloud.normals[n.point], normal) == 1;
-                if (parallel && n.outward == outward) one.push_back(n);
-            }
-            for (int i = 0; i < kPlacesAnEdge; ++i) {
-                const double along = 0.1 + 0.8 * i / kPlacesAnEdge;
-                double reach = -1;
-                for (const NearEdge& n : one) reach = std::max(reach, reach_at(n, cloud, found, along));
-                right += std::abs(reach) < 0.25 * kBoxSpacing;
-                short_of_it += reach < -0.1 * kBoxSpacing;
-            }
-        }
+        const Outline outline = outline_of(near, cloud, found);
         size_t rising = 0, lined = 0;
         for (const NearEdge& n : near)
             if (found.edges[n.point].code != kNoEdge && found.normals[n.point] != glm::vec3(0.0f))
@@ -131,13 +140,28 @@ TEST(EdgeLines, MostOfABoxsOutlineIsRightToAQuarterOfASpacing) {
         std::printf(
             "noise of %.1f spacings: %.1f %% of the outline right, %.2f %% short of the edge; %.1f %% of the "
             "points at edges have lines, %.2f %% of these are taken for corners\n",
-            noise, 100.0 * right / kOutlinePlaces, 100.0 * short_of_it / kOutlinePlaces,
+            noise, 100.0 * outline.right, 100.0 * outline.short_of_it,
             100.0 * static_cast<double>(lined) / static_cast<double>(near.size()),
             100.0 * static_cast<double>(rising) / static_cast<double>(lined));
-        EXPECT_GE(right, least * kOutlinePlaces) << noise;
+        EXPECT_GE(outline.right, least) << noise;
         EXPECT_GE(lined, 9 * near.size() / 10) << noise;
-        EXPECT_LE(short_of_it, most_short * kOutlinePlaces) << noise;
+        EXPECT_LE(outline.short_of_it, most_short) << noise;
         EXPECT_LE(rising, 0.01 * static_cast<double>(lined)) << noise;
+    }
+}
+
+/// The points next to a right-angled edge have a side that turns by 45 degrees from the whole neighbourhood.
+TEST(EdgeLines, ScansWithoutStationsHaveThem) {
+    for (const bool stated : {false, true}) {
+        const Cloud box = cube(kBoxPoints, 0);
+        NormalOptions options;
+        options.normals = !stated;
+        const Estimate found = estimate(box, options);
+        const Outline outline = outline_of(near_edges(box), box, found);
+        std::printf("%s normals: %.1f %% of the outline right, %.2f %% short of the edge\n",
+                    stated ? "stated" : "estimated", 100 * outline.right, 100 * outline.short_of_it);
+        EXPECT_GE(outline.right, stated ? 0.95 : 0.93) << stated;
+        EXPECT_LE(outline.short_of_it, 0.005) << stated;
     }
 }
 
