@@ -82,8 +82,10 @@ inline std::string read_arguments(int argc, char** argv, const BenchWords& words
                 run.subject = argument;
             else if (std::ranges::find(words.parts, argument) != words.parts.end())
                 run.parts.push_back(argument);
-            else
+            else if (run.folder.empty() && argument.find_first_not_of("0123456789") != std::string::npos)
                 run.folder = argument;
+            else  // a part that does not exist, or a subject that is written wrongly
+                return argument;
             continue;
         }
         const std::string name = argument.substr(2);
@@ -110,6 +112,7 @@ inline int bench_main(int argc, char** argv, const std::function<Result<void>(co
     if (const std::string wrong = read_arguments(argc, argv, words, run); !wrong.empty()) {
         std::string usage = program + " [FOLDER]";
         for (const std::string& subject : words.subjects) usage += fmt::format(" [{}]", subject);
+        for (const std::string& part : words.parts) usage += fmt::format(" [{}]", part);
         usage += " [--scale S, of the full size, at most 1]";
         for (const std::string& option : words.options) usage += fmt::format(" [--{} NUMBER]", option);
         fmt::print(stderr, "{}: {}: is unknown or has no valid number; usage: {}\n", program, wrong, usage);

@@ -2,9 +2,9 @@
 // light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
 // (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [ENGINE] [--scale
 // S] [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). ENGINE:
-// micro or environment (gathered_figures.h) or yue (paths_figures.h) instead; or `gaitatzes [6] [7]`: these
-// chapters of Gaitatzes 2012 (voxel_figures.h). This is a program and not a test; it takes about ten minutes
-// on two cores.
+// micro or environment (gathered_figures.h) or yue (paths_figures.h) instead; or `gaitatzes [5] [6]
+// [7]`: these chapters of Gaitatzes 2012 (volume_figures.h, voxel_figures.h). This is a program and not a
+// test; it takes about ten minutes on two cores.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,6 +24,7 @@
 #include "tests/bench/paths_figures.h"
 #include "tests/bench/scan.h"
 #include "tests/bench/stage.h"
+#include "tests/bench/volume_figures.h"
 #include "tests/bench/voxel_figures.h"
 
 namespace lucarne {
@@ -206,7 +207,11 @@ Result<void> make_figures(const BenchRun& run) {
     if (run.subject == "micro") return bench::figures_of_micro(*device, run);
     if (run.subject == "environment") return bench::figures_of_environment(*device, run);
     if (run.subject == "yue") return bench::figures_of_paths(*device, run);
-    if (run.subject == "gaitatzes") return bench::figures_of_gaitatzes(*device, run);
+    if (run.subject == "gaitatzes") {
+        if (run.wants("5")) LUCARNE_TRY(bench::figures_of_chapter_5(*device, run));
+        if (run.wants("6")) LUCARNE_TRY(bench::figures_of_chapter_6(*device, run));
+        return run.wants("7") ? bench::figures_of_chapter_7(*device, run) : Result<void>{};
+    }
     const double only = run.option("only", 0);
     const auto wanted = [&](int figure) { return only == 0 || only == figure; };
     if (wanted(9) || wanted(10) || wanted(14)) {
@@ -226,7 +231,8 @@ Result<void> make_figures(const BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(
-        argc, argv, lucarne::make_figures,
-        {.options = {"only"}, .subjects = {"micro", "environment", "yue", "gaitatzes"}, .parts = {"6", "7"}});
+    return lucarne::bench::bench_main(argc, argv, lucarne::make_figures,
+                                      {.options = {"only"},
+                                       .subjects = {"micro", "environment", "yue", "gaitatzes"},
+                                       .parts = {"5", "6", "7"}});
 }

@@ -17,7 +17,7 @@
 namespace lucarne::bench {
 
 inline std::string scene_file(const std::string& name) {
-    return std::string(LUCARNE_SOURCE_DIR) + "/data/scenes/" + name + ".json";
+    return fmt::format("{}/data/scenes/{}.json", LUCARNE_SOURCE_DIR, name);
 }
 
 /// The cache of a virtual scan of a scene in `folder`.

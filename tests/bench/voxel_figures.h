@@ -399,10 +399,4 @@ inline Result<void> figures_of_chapter_7(gi::Device& device, const BenchRun& run
     return {};
 }
 
-/// `run.parts`: chapters; none: all.
-inline Result<void> figures_of_gaitatzes(gi::Device& device, const BenchRun& run) {
-    if (run.wants("6")) LUCARNE_TRY(figures_of_chapter_6(device, run));
-    return run.wants("7") ? figures_of_chapter_7(device, run) : Result<void>{};
-}
-
 }  // namespace lucarne::bench
