@@ -40,12 +40,16 @@ LUCARNE_FN bool is_one_surface(GBufferTexel a, vec3 normal, GBufferTexel b, vec3
 LUCARNE_FN bool may_be_rim(GBufferTexel texel, vec3 ray) {
     return dot(texel_normal(texel), ray) >= -kCosRim;
 }
-// Returns the normal of a rim: that of the side away from the viewer, turned until it stands at right angles
-// to the ray (unit).
+// By which the normal of a rim leans toward the viewer, so that it does not face away once it is rounded to
+// 16 bits: such a texel would reflect nothing.
+LUCARNE_CONST float kRimLean = 1e-3f;
+
+// Returns the normal of a rim: that of the side away from the viewer, turned until it stands nearly at right
+// angles to the ray (unit).
 LUCARNE_FN vec3 rim_normal(GBufferTexel texel, vec3 ray) {
     vec3 normal = texel_normal(texel);
     vec3 turned = dot(normal, ray) * ray - normal;
-    return turned * inversesqrt(max(dot(turned, turned), 1e-12f));
+    return normalize(turned * inversesqrt(max(dot(turned, turned), 1e-12f)) - kRimLean * ray);
 }
 
 #ifdef __cplusplus

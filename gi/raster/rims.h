@@ -8,8 +8,8 @@ namespace lucarne::gi {
 /// viewer, discs beyond its outline stick out and show their other side; lit on that side, inside a solid
 /// body, they would be black. Such a texel is seen at a low angle, and most texels of its surface around it
 /// (is_one_surface) show the other side: its normal is turned to the side away from the viewer, only as far
-/// as to stand at right angles to the ray. It does not matter on which side the scan's normals stand. Call it
-/// after rasterize() or blend(). Errors: out of device memory; the shader's.
+/// as to stand nearly at right angles to the ray. It does not matter on which side the scan's normals stand.
+/// Call it after rasterize() or blend(). Errors: out of device memory; the shader's.
 Result<void> turn_rims(Device& device, const CameraView& view, GBuffer& target);
 
 }  // namespace lucarne::gi

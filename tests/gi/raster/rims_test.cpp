@@ -78,6 +78,23 @@ TEST_P(Rims, OutlinesOfASolidAreLitOnItsOutside) {
         }
 }
 
+TEST_P(Rims, TurnedNormalsFaceTheViewer) {
+    const auto surfels = column_before_wall(0.02f);
+    const CameraView view = look({0.1f, 0, 0}, {0.05f, 1, 0.1f}, 320, 240, 0.7f);
+    const Picture before = picture(surfels, view, false), after = picture(surfels, view, true);
+    size_t turned = 0;
+    for (uint32_t at = 0; at < after.texels.size(); ++at) {
+        if (before.texels[at].normal == after.texels[at].normal) continue;
+        ++turned;
+        // What faces away, were it only because normals are rounded, reflects nothing: a black point.
+        const glm::vec3 ray = glm::normalize(after.ray(at % view.width, at / view.width));
+        const float cosine = -glm::dot(texel_normal(after.texels[at]), ray);
+        EXPECT_GT(cosine, 0) << at;
+        EXPECT_LT(cosine, 0.01f) << at;
+    }
+    EXPECT_GT(turned, 100u);
+}
+
 TEST_P(Rims, SurfacesSeenFromBehindStayAsTheyAre) {
     // Walls seen from behind, straight on and at a low angle.
     for (const glm::vec3& eye : {glm::vec3(0, 5, 0), glm::vec3(3, 2.6f, 0)}) {
