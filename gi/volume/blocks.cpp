@@ -16,11 +16,6 @@
 namespace lucarne::gi::volume {
 namespace {
 
-/// Of squares as large as gaps are taken to be, one in e to this power is free by chance.
-constexpr float kRarity = 16;
-/// What touches a voxel may lie this far outside of it, and touches a block then, too.
-constexpr float kTouchingBlocks = 1.25f * kBlocksAlong * kTouching;
-
 constexpr int kAlong = 3 * kBlocksAlong;
 constexpr int kMiddle = 13;  ///< of the voxels
 using Rows = BlockRows;
@@ -129,40 +124,52 @@ Rows all_of_cubes(const Rows& cubes, int side) {
 
 }  // namespace
 
-uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell) {
-    Polygon scaled = part;
-    for (size_t i = 0; i < scaled.count; ++i)
-        scaled.corners[i] = static_cast<float>(kBlocksAlong) * (part.corners[i] - glm::vec3(cell));
-    uint64_t touched = 0;
-    for_each_voxel_of(glm::ivec3(kBlocksAlong), scaled, kTouchingBlocks,
-                      [&](const glm::ivec3& block, const Polygon&) { touched |= block_bit(block); });
-    return touched;
-}
-
 uint64_t blocks_in_box(const glm::vec3& low, const glm::vec3& high) {
     const auto layer = [](float place) {
         return static_cast<int>(std::clamp(place, 0.0f, float{kBlocksAlong - 1}));
     };
     uint64_t found = kAllBlocks;
-    constexpr uint64_t kRepeated[] = {0x1111111111111111u, 0x0001000100010001u, 1};
-    for (int axis = 0; axis < 3; ++axis) {
-        const int first = layer(low[axis] - kTouchingBlocks), last = layer(high[axis] + kTouchingBlocks);
-        const int bits = 1 << (2 * axis);  // of a layer in each repetition
-        const uint64_t ones = kAllBlocks >> (64 - bits * (last - first + 1));
-        found &= (ones << (bits * first)) * kRepeated[axis];
-    }
+    for (int axis = 0; axis < 3; ++axis)
+        found &= block_layers(axis, layer(low[axis] - kTouchingBlocks), layer(high[axis] + kTouchingBlocks));
     return found;
 }
 
-uint64_t blocks_near_plane(uint64_t blocks, const glm::vec3& normal, const glm::vec3& place) {
+uint64_t blocks_touched(uint64_t blocks, const glm::vec3& place, const glm::vec3& normal, float radius) {
+    constexpr float kHalf = 0.5f + kTouchingBlocks;
     const glm::vec3 off = glm::abs(normal);
-    const float reach = (0.5f + 2 * kTouchingBlocks) * (off.x + off.y + off.z);
+    const float reach = kHalf * (off.x + off.y + off.z);
+    const auto from_place = [&](int bit) {
+        return glm::vec3(static_cast<float>(bit % 4) + 0.5f, static_cast<float>(bit / 4 % 4) + 0.5f,
+                         static_cast<float>(bit / 16) + 0.5f) -
+               place;
+    };
+    uint64_t near = 0;
+    for (uint64_t left = blocks; left != 0; left &= left - 1)
+        if (std::abs(glm::dot(normal, from_place(std::countr_zero(left)))) <= reach)
+            near |= left & (~left + 1);
+    if (near == 0) return 0;
+    // Two convex bodies are apart if they are along a normal of a face of one (the blocks are in the box), or
+    // along a direction across an edge of each (Gottschalk et al. 1996, "OBBTree"). Opposite edges of an
+    // octagon are parallel.
+    constexpr size_t kDirections = 12;
+    float x[kDirections], y[kDirections], z[kDirections], most[kDirections];
+    const Octagon octagon(normal, radius);
+    const glm::vec3 u = octagon.u, v = octagon.v;
+    size_t k = 0;
+    for (const glm::vec3& edge : {u, v, u + v, u - v})
+        for (const glm::vec3& across :
+             {glm::vec3(0, edge.z, -edge.y), glm::vec3(-edge.z, 0, edge.x), glm::vec3(edge.y, -edge.x, 0)}) {
+            x[k] = across.x, y[k] = across.y, z[k] = across.z;
+            most[k++] = octagon.reach(across) +
+                        kHalf * (std::abs(across.x) + std::abs(across.y) + std::abs(across.z));
+        }
     uint64_t found = 0;
-    for (uint64_t left = blocks; left != 0; left &= left - 1) {
-        const int bit = std::countr_zero(left);
-        const glm::vec3 middle(static_cast<float>(bit % 4) + 0.5f, static_cast<float>(bit / 4 % 4) + 0.5f,
-                               static_cast<float>(bit / 16) + 0.5f);
-        if (std::abs(glm::dot(normal, middle - place)) <= reach) found |= left & (~left + 1);
+    for (; near != 0; near &= near - 1) {
+        const glm::vec3 way = from_place(std::countr_zero(near));
+        int apart = 0;
+        for (size_t i = 0; i < kDirections; ++i)
+            apart |= std::abs(x[i] * way.x + y[i] * way.y + z[i] * way.z) > most[i];
+        if (!apart) found |= near & (~near + 1);
     }
     return found;
 }

@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "gi/volume/polygon.h"
+#include "gi/volume/disc_areas.h"
 
 namespace lucarne::gi::volume {
 
@@ -18,20 +18,30 @@ inline uint64_t block_bit(const glm::ivec3& block) {
     return uint64_t{1} << (block.x + kBlocksAlong * (block.y + kBlocksAlong * block.z));
 }
 
-/// Returns the blocks that a part of a disc touches. `part`: in units of voxels, in the voxel at `cell`.
-uint64_t blocks_of(const Polygon& part, const glm::ivec3& cell);
+/// What touches a voxel may lie this far outside of it, and touches a block then, too; in blocks.
+inline constexpr float kTouchingBlocks = 1.25f * kBlocksAlong * kTouching;
+
+/// Returns the blocks in the layers from `first` to `last` along an axis.
+inline uint64_t block_layers(int axis, int first, int last) {
+    constexpr uint64_t kRepeated[] = {0x1111111111111111u, 0x0001000100010001u, 1};
+    const int bits = 1 << (2 * axis);  // of a layer in each repetition
+    return ((kAllBlocks >> (64 - bits * (last - first + 1))) << (bits * first)) * kRepeated[axis];
+}
 
 /// Returns blocks of which those that a part of a disc touches are a few: all in the box about it. `low`,
 /// `high`: of the box, in units of blocks of its voxel.
 uint64_t blocks_in_box(const glm::vec3& low, const glm::vec3& high);
 
-/// Returns those of some blocks that a plane may touch. `place`: in the plane, in units of blocks.
-uint64_t blocks_near_plane(uint64_t blocks, const glm::vec3& normal, const glm::vec3& place);
+/// Returns those of some blocks in the box about a disc that it touches (an octagon about it, which touches a
+/// few more). `place`, `radius`: of the disc, in units of blocks of their voxel.
+uint64_t blocks_touched(uint64_t blocks, const glm::vec3& place, const glm::vec3& normal, float radius);
 
 /// Returns how many blocks wide gaps between discs may be: 1 (none), or up to kWidestGap, or more if voxels
 /// are too small to tell gaps from openings. `radius`, `area`: of each disc and of its share of the surface,
 /// in voxels.
 int gap_between(float radius, float area);
+/// Of squares as large as gaps are taken to be, one in e to this power is free by chance.
+inline constexpr float kRarity = 16;
 inline constexpr int kWidestGap = kBlocksAlong + 1;
 
 /// Returns the blocks of the middle one of 3 x 3 x 3 voxels, and those that are free only in gaps: that no

@@ -2,8 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include <glm/vec3.hpp>
+
+#include "gi/volume/native/discs.h"
 
 namespace lucarne::gi::volume {
 
@@ -15,17 +18,16 @@ float disc_share(float distance);
 /// directions from that side to the lines.
 float disc_share(float first, float second, float cosine);
 
-/// The part of a disc in a voxel. Lengths are in voxels.
+/// The part of a disc in a voxel.
 struct DiscPart {
     glm::ivec3 cell{0};
-    float share = 0;                  ///< of the disc
-    glm::vec3 low{0.0f}, high{0.0f};  ///< of a box that holds the part
+    float share = 0;   ///< of the disc
+    uint64_t box = 0;  ///< blocks of the voxel, in a box about the part
 };
 
 /// Finds the parts of a disc in the voxels that it touches, if borders of voxels cut it along at most two
-/// axes, and once along each. Returns their number, or 0 if there are more. `place`, `radius`: of the disc,
-/// in voxels; the disc must lie where coordinates are positive.
-size_t few_parts(const glm::vec3& place, const glm::vec3& normal, float radius,
-                 std::array<DiscPart, 4>& parts);
+/// axes, and once along each. Returns their number, or 0 if there are more. The disc must lie in the grid as
+/// a whole.
+size_t few_parts(const DiscBatch& discs, size_t disc, std::array<DiscPart, 4>& parts);
 
 }  // namespace lucarne::gi::volume

@@ -12,11 +12,11 @@
 #include <glm/exponential.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "gi/shared/brdf.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/volume/blocks.h"
 #include "gi/volume/disc_areas.h"
 #include "gi/volume/disc_shares.h"
+#include "gi/volume/native/discs.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::volume {
@@ -26,15 +26,17 @@ constexpr size_t kSurfelsAPiece = 16384, kSurfelsAtOnce = 8 * kSurfelsAPiece;
 /// How many parts there may be, of 12 bytes each while they are made: some, and so many a surfel. A disc of a
 /// scan touches two voxels on the average.
 constexpr size_t kSomeParts = size_t{1} << 22, kPartsASurfel = 8;
-/// Of a disc, in voxels: those of a broken file would touch every voxel of the grid, one after the other.
-constexpr float kLargestRadius = 1024;
 constexpr size_t kGapsATask = 256;
 
-/// Returns the part of a polygon in a box.
-Polygon clipped(Polygon polygon, const glm::vec3& low, const glm::vec3& high) {
-    for (int axis = 0; axis < 3; ++axis)
-        polygon = cut(cut(polygon, axis, 1.0f, low[axis]), axis, -1.0f, -high[axis]);
-    return polygon;
+/// Returns the blocks of a cell in a box, which is in units of voxels.
+uint64_t block_box(const glm::ivec3& cell, const glm::vec3& low, const glm::vec3& high) {
+    constexpr auto kPerVoxel = static_cast<float>(kBlocksAlong);
+    const glm::vec3 corner(cell);
+    return blocks_in_box(kPerVoxel * (low - corner), kPerVoxel * (high - corner));
+}
+
+glm::vec3 vector_of(const std::array<DiscBatch::Floats, 3>& components, size_t disc) {
+    return {components[0][disc], components[1][disc], components[2][disc]};
 }
 
 }  // namespace
@@ -73,61 +75,53 @@ VoxelMaker::VoxelMaker(std::span<const FlatSurfel> surfels, const Grid& grid)
       gaps_(grid.cells(), 0),
       most_(kSomeParts + kPartsASurfel * surfels.size()) {}
 
-/// Marks the blocks of a cell that a part of a disc touches. Most are marked already, by the discs about it:
-/// only where blocks near the part are missing does it ask for the polygon of the part. `low`, `high`: of the
-/// part, in units of voxels.
-template <class Part>
-void VoxelMaker::mark(const Disc& disc, const glm::ivec3& cell, const glm::vec3& low, const glm::vec3& high,
-                      const Part& part) {
+/// Marks the blocks of a cell that a disc touches. Most are marked already, by the discs about it. `box`: of
+/// the disc's part in the cell (blocks beyond it, which an octagon may touch, do not count).
+void VoxelMaker::mark(const DiscBatch& discs, size_t disc, const glm::ivec3& cell, uint64_t box) {
     const uint32_t number = grid_.number(cell);
+    const int own_gap = discs.gap[disc];
     const std::atomic_ref<uint8_t> gap(gaps_[number]);
     uint8_t widest = gap.load(std::memory_order_relaxed);
-    while (widest < disc.gap && !gap.compare_exchange_weak(widest, disc.gap, std::memory_order_relaxed)) {
+    while (widest < own_gap &&
+           !gap.compare_exchange_weak(widest, static_cast<uint8_t>(own_gap), std::memory_order_relaxed)) {
     }
     const std::atomic_ref<uint64_t> marked(blocks_[number]);
-    const glm::vec3 corner(cell);
-    constexpr auto kPerVoxel = static_cast<float>(kBlocksAlong);
     const uint64_t missing = ~marked.load(std::memory_order_relaxed);
-    if (disc.gap > kWidestGap) {
+    if (own_gap > kWidestGap) {
         if (missing != 0) marked.fetch_or(kAllBlocks, std::memory_order_relaxed);
         return;
     }
-    // Blocks beyond the box, which an octagon may touch, do not count: whether they are asked for depends on
-    // which disc comes first.
-    const uint64_t box = blocks_in_box(kPerVoxel * (low - corner), kPerVoxel * (high - corner));
-    if (blocks_near_plane(missing & box, disc.normal, kPerVoxel * (disc.place - corner)) == 0) return;
-    marked.fetch_or(box & blocks_of(part(), cell), std::memory_order_relaxed);
+    if ((missing & box) == 0) return;
+    constexpr auto kPerVoxel = static_cast<float>(kBlocksAlong);
+    const uint64_t found =
+        blocks_touched(missing & box, kPerVoxel * (vector_of(discs.place, disc) - glm::vec3(cell)),
+                       vector_of(discs.normal, disc), kPerVoxel * discs.radius[disc]);
+    if (found != 0) marked.fetch_or(found, std::memory_order_relaxed);
 }
 
-void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) {
-    const FlatSurfel& surfel = surfels_[number];
-    const float radius = std::min(surfel.radius, kLargestRadius * grid_.voxel);
-    const glm::vec3 middle(surfel.x, surfel.y, surfel.z), place = grid_.place(middle);
-    const float reach = 1.5f * radius / grid_.voxel + kTouching;  // of the octagon's corners, and some more
+void VoxelMaker::add_parts(const DiscBatch& discs, size_t disc, uint32_t number,
+                           std::vector<CellPart>& target) {
+    const glm::vec3 place = vector_of(discs.place, disc);
+    const float reach = 1.5f * discs.radius[disc] + kTouching;  // of the octagon's corners, and some more
     const glm::vec3 size(grid_.size);
     const bool inside =
         glm::all(glm::greaterThan(place, glm::vec3(reach))) && glm::all(glm::lessThan(place, size - reach));
     if (!inside && (glm::any(glm::lessThan(place, glm::vec3(-reach))) ||
                     glm::any(glm::greaterThan(place, size + reach))))
         return;
-    const glm::vec3 normal = decode_octahedral(surfel.normal);
-    const float whole = surfel.area > 0 ? surfel.area : kPi * radius * radius;
-    const Disc disc{
-        place, normal,
-        static_cast<uint8_t>(gap_between(radius / grid_.voxel, whole / (grid_.voxel * grid_.voxel)))};
+    const float whole = discs.area[disc];
     // Most discs lie in a few voxels.
     std::array<DiscPart, 4> parts;
-    if (const size_t few = inside ? few_parts(place, normal, radius / grid_.voxel, parts) : 0) {
+    if (const size_t few = inside ? few_parts(discs, disc, parts) : 0) {
         for (size_t i = 0; i < few; ++i) {
-            const DiscPart& part = parts[i];
-            target.push_back({grid_.number(part.cell), {number, whole * part.share}});
-            mark(disc, part.cell, part.low, part.high, [&] {
-                return clipped(octagon_about(grid_, middle, normal, radius), glm::vec3(part.cell) - kTouching,
-                               glm::vec3(part.cell + 1) + kTouching);
-            });
+            target.push_back({grid_.number(parts[i].cell), {number, whole * parts[i].share}});
+            mark(discs, disc, parts[i].cell, parts[i].box);
         }
         return;
     }
+    const FlatSurfel& surfel = surfels_[number];
+    const glm::vec3 middle(surfel.x, surfel.y, surfel.z), normal = vector_of(discs.normal, disc);
+    const float radius = discs.radius[disc] * grid_.voxel;
     const size_t first = target.size();
     float sum = 0;
     for_each_voxel(grid_, middle, normal, radius, [&](const glm::ivec3& cell, const Polygon& part) {
@@ -139,7 +133,7 @@ void VoxelMaker::add_parts(uint32_t number, std::vector<CellPart>& target) {
             least = glm::min(least, part.corners[i]);
             most = glm::max(most, part.corners[i]);
         }
-        mark(disc, cell, least, most, [&] { return part; });
+        mark(discs, disc, cell, block_box(cell, least, most));
     });
     if (grid_.part && !inside) sum = std::max(sum, octagon_about(grid_, middle, normal, radius).area());
     for (size_t i = first; i < target.size(); ++i)
@@ -153,13 +147,18 @@ Result<bool> VoxelMaker::advance() {
         auto& own = pieces_[(done_ + first) / kSurfelsAPiece];
         own.reserve(2 * (last - first));
         size_t counted = 0;
+        DiscBatch discs;
         for (size_t i = done_ + first; i < done_ + last && parts_.load(std::memory_order_relaxed) <= most_;
-             ++i) {
-            if (!has_disc(surfels_[i])) continue;
-            add_parts(static_cast<uint32_t>(i), own);
-            if (own.size() - counted < kSurfelsAPiece) continue;
-            parts_ += own.size() - counted;
-            counted = own.size();
+             i += DiscBatch::kMost) {
+            const auto batch = surfels_.subspan(i, std::min(DiscBatch::kMost, done_ + last - i));
+            prepare_discs(batch, grid_, discs);
+            for (size_t k = 0; k < batch.size(); ++k) {
+                if (!has_disc(batch[k])) continue;
+                add_parts(discs, k, static_cast<uint32_t>(i + k), own);
+                if (own.size() - counted < kSurfelsAPiece) continue;
+                parts_ += own.size() - counted;
+                counted = own.size();
+            }
         }
         parts_ += own.size() - counted;
     });

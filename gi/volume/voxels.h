@@ -12,6 +12,8 @@
 
 namespace lucarne::gi::volume {
 
+struct DiscBatch;
+
 /// A part of a surfel in a voxel.
 struct SurfelPart {
     uint32_t surfel = 0;
@@ -80,15 +82,8 @@ class VoxelMaker {
         uint32_t cell;
         SurfelPart part;
     };
-    /// A disc in units of voxels.
-    struct Disc {
-        glm::vec3 place, normal;
-        uint8_t gap;  ///< gap_between() of discs like this
-    };
-    void add_parts(uint32_t surfel, std::vector<CellPart>& target);
-    template <class Part>
-    void mark(const Disc& disc, const glm::ivec3& cell, const glm::vec3& low, const glm::vec3& high,
-              const Part& part);
+    void add_parts(const DiscBatch& discs, size_t disc, uint32_t number, std::vector<CellPart>& target);
+    void mark(const DiscBatch& discs, size_t disc, const glm::ivec3& cell, uint64_t box);
 
     std::span<const FlatSurfel> surfels_;
     Grid grid_;

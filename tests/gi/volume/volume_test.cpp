@@ -12,7 +12,6 @@
 #include "gi/volume/air.h"
 #include "gi/volume/blocks.h"
 #include "gi/volume/disc_areas.h"
-#include "gi/volume/disc_shares.h"
 #include "gi/volume/faces.h"
 #include "gi/volume/openings.h"
 #include "gi/volume/voxels.h"
@@ -76,71 +75,6 @@ TEST(DiscAreas, AHalfOfADiscLiesOnEitherSideOfItsMiddle) {
         EXPECT_EQ(cell.z, 0);
         EXPECT_NEAR(part.area(), .5f * 8 * std::tan(3.14159265f / 8) * .09f, 1e-3f);
     });
-}
-
-TEST(DiscShares, AreThoseOfPointsSpreadOverTheDisc) {
-    Random random(5);
-    const auto uniform = [&](double least, double most) {
-        return static_cast<float>(least + (most - least) * random.uniform());
-    };
-    EXPECT_FLOAT_EQ(disc_share(0), .5f);
-    EXPECT_FLOAT_EQ(disc_share(2), 1);
-    EXPECT_FLOAT_EQ(disc_share(-2), 0);
-    EXPECT_NEAR(disc_share(0, 0, 0), .25f, 1e-6f);
-    constexpr int kPoints = 20000;
-    for (int i = 0; i < 200; ++i) {
-        const float angle = uniform(0, 3.14159265), cosine = std::cos(angle), sine = std::sin(angle);
-        const float first = uniform(-1.3, 1.3), second = uniform(-1.3, 1.3);
-        int before_first = 0, before_both = 0;
-        for (int k = 0; k < kPoints; ++k) {  // a spiral by the golden angle
-            const float r = std::sqrt((static_cast<float>(k) + .5f) / kPoints),
-                        turn = 2.39996323f * static_cast<float>(k);
-            const float x = r * std::cos(turn), y = r * std::sin(turn);
-            before_first += x <= first;
-            before_both += x <= first && cosine * x + sine * y <= second;
-        }
-        EXPECT_NEAR(disc_share(first), static_cast<float>(before_first) / kPoints, .003f) << first;
-        EXPECT_NEAR(disc_share(first, second, cosine), static_cast<float>(before_both) / kPoints, .003f)
-            << first << " " << second << " " << angle;
-    }
-}
-
-TEST(DiscShares, AreThoseOfTheOctagonsPartsAndTouchTheSameVoxels) {
-    const Grid grid{glm::vec3(0), 1, glm::ivec3(8)};
-    Random random(6);
-    const auto uniform = [&] { return static_cast<float>(random.uniform()); };
-    std::array<size_t, 5> kinds{};
-    for (int i = 0; i < 3000; ++i) {
-        const float nx = uniform() - .5f, ny = uniform() - .5f, nz = uniform() - .5f;
-        const glm::vec3 normal =
-            glm::normalize(i % 3 == 0 ? glm::vec3(nx, .01f * ny, .01f * nz) : glm::vec3(nx, ny, nz));
-        const float x = uniform(), y = uniform(), z = uniform(), radius = .35f * uniform() + .1f;
-        const glm::vec3 place = glm::vec3(3) + 2.0f * glm::vec3(x, y, z);
-        std::array<DiscPart, 4> parts;
-        const size_t few = few_parts(place, normal, radius, parts);
-        ++kinds[few];
-        if (few == 0) continue;
-        std::map<uint32_t, float> polygons;
-        float all = 0, sum = 0;
-        for_each_voxel(grid, place, normal, radius, [&](const glm::ivec3& cell, const Polygon& part) {
-            polygons[grid.number(cell)] = part.area();
-            all += part.area();
-        });
-        for (size_t k = 0; k < few; ++k) {
-            const auto found = polygons.find(grid.number(parts[k].cell));
-            ASSERT_NE(found, polygons.end()) << "a voxel that the octagon does not touch";
-            EXPECT_GT(parts[k].share, 0);
-            // In the border of two voxels the octagon counts in both.
-            if (i % 3 != 0) {
-                EXPECT_NEAR(parts[k].share, found->second / all, .03f);
-            }
-            sum += parts[k].share;
-            polygons.erase(found);
-        }
-        EXPECT_NEAR(sum, 1, 1e-5f);
-        for (const auto& [cell, area] : polygons) EXPECT_LT(area / all, .005f) << "corners of the octagon";
-    }
-    for (const size_t kind : kinds) EXPECT_GT(kind, 30u) << "each number of parts is met";
 }
 
 TEST(Voxels, AreasOfPartsAddUpToThoseOfTheSurfels) {
@@ -254,17 +188,6 @@ TEST(Voxels, WallsOfAnyDirectionStopDiagonalSteps) {
                 EXPECT_GT(glm::dot(grid.middle(grid.cell(cell)) - glm::vec3(1), normal), 0) << i;
             }
     }
-}
-
-TEST(Blocks, ThatADiscTouchesAreSet) {
-    Polygon square;  // in the plane z = 2.3, over a quarter of the voxel
-    for (const glm::vec2& corner : {glm::vec2(0), glm::vec2(.45f, 0), glm::vec2(.45f), glm::vec2(0, .45f)})
-        square.add(glm::vec3(1, 1, 2.3f) + glm::vec3(corner, 0));
-    const uint64_t small = blocks_of(square, {1, 1, 2});
-    EXPECT_EQ(small, 0x33u << 16) << "2 x 2 blocks of the second layer";
-    EXPECT_EQ(std::popcount(free_columns(small, 2)), 4 * (16 - 4));
-    EXPECT_EQ(std::popcount(free_columns(small, 0)), 4 * (16 - 2));
-    EXPECT_EQ(free_columns(kAllBlocks, 1), 0u);
 }
 
 TEST(Blocks, GapsBetweenDiscsAreAsWideAsTheirCoverageTells) {
