@@ -17,7 +17,8 @@ namespace lucarne::gi::volume {
 namespace {
 
 constexpr uint32_t kEmptySlot = 0xffffffffu, kOutside = 0xfffffffeu;
-constexpr size_t kVoxelsATask = 4096, kSamplesATask = 8192, kRowsATask = 64;
+constexpr size_t kVoxelsATask = 4096, kSamplesATask = 8192, kRowsATask = 64, kBricksATask = 512;
+constexpr int kBrick = 4;  ///< voxels along each axis
 /// Cells farther away than this have no number.
 constexpr float kFarthestCell = 1e9f;
 
@@ -202,10 +203,35 @@ void ImageVoxels::finish_image(const SeenImage& image) {
     }
 }
 
-/// Clears, keeps or fills every voxel of the window by what the pictures show at its middle.
+/// Tells for each brick of the window, x fastest, whether pictures may show a surface in its voxels.
+std::vector<uint8_t> ImageVoxels::shown_bricks(std::span<const VoxelSight> sights,
+                                               std::span<const SeenImage> images) const {
+    std::vector<DepthTiles> tiles;
+    for (const SeenImage& image : images) tiles.emplace_back(image);
+    const glm::ivec3 count = (grid_.size + kBrick - 1) / kBrick;
+    const float radius = 0.5f * std::sqrt(3.0f) * (kBrick - 1) * grid_.voxel;  // about the middles of voxels
+    std::vector<uint8_t> shown(static_cast<size_t>(count.x) * static_cast<size_t>(count.y) *
+                               static_cast<size_t>(count.z));
+    parallel_ranges(shown.size(), kBricksATask, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const int brick = static_cast<int>(i);
+            const glm::ivec3 at(brick % count.x, brick / count.x % count.y, brick / count.x / count.y);
+            const glm::vec3 middle =
+                (glm::vec3(low_ + kBrick * at) + 0.5f * static_cast<float>(kBrick)) * grid_.voxel;
+            for (size_t k = 0; k < sights.size() && !shown[i]; ++k)
+                shown[i] = sights[k].may_show_surface(middle, radius, tiles[k]) ? 1 : 0;
+        }
+    });
+    return shown;
+}
+
+/// Clears, keeps or fills every voxel of the window by what the pictures show at its middle. Voxels that are
+/// empty stay so in bricks in which no surface can be visible.
 void ImageVoxels::fuse(std::span<const SeenImage> images, const ImageUpdate& how) {
     std::vector<VoxelSight> sights;
     for (const SeenImage& image : images) sights.emplace_back(image, grid_.voxel);
+    const std::vector<uint8_t> shown = shown_bricks(sights, images);
+    const glm::ivec3 across = (grid_.size + kBrick - 1) / kBrick;  // bricks
     std::vector<int> wrapped_x;
     for (int x = 0; x < grid_.size.x; ++x) wrapped_x.push_back(wrapped(low_.x + x, grid_.size.x));
     std::vector<std::vector<SeenVoxel>> rows(static_cast<size_t>(grid_.size.y) *
@@ -216,8 +242,12 @@ void ImageVoxels::fuse(std::span<const SeenImage> images, const ImageUpdate& how
                                                 static_cast<int>(row) / grid_.size.y);
             const glm::ivec3 home(0, wrapped(cell.y, grid_.size.y), wrapped(cell.z, grid_.size.z));
             const uint32_t* numbers = &numbers_[grid_.number(home)];
-            for (const int x : wrapped_x) {
-                fuse_cell(sights, images, how, cell, numbers[x], rows[row]);
+            const glm::ivec3 brick = (cell - low_) / kBrick;
+            const uint8_t* bricks = &shown[static_cast<size_t>((brick.z * across.y + brick.y) * across.x)];
+            for (int x = 0; x < grid_.size.x; ++x) {
+                const uint32_t number = numbers[wrapped_x[static_cast<size_t>(x)]];
+                if (number != kEmptySlot || bricks[x / kBrick])
+                    fuse_cell(sights, images, how, cell, number, rows[row]);
                 ++cell.x;
             }
         }

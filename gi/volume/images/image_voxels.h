@@ -88,6 +88,8 @@ class ImageVoxels {
     void inject(std::span<const SeenImage> images, const ImageUpdate& how);
     void inject(const SeenImage& image, uint32_t number, const ImageUpdate& how);
     void finish_image(const SeenImage& image);
+    std::vector<uint8_t> shown_bricks(std::span<const VoxelSight> sights,
+                                      std::span<const SeenImage> images) const;
     void fuse(std::span<const SeenImage> images, const ImageUpdate& how);
     void fuse_cell(std::span<const VoxelSight> sights, std::span<const SeenImage> images,
                    const ImageUpdate& how, const glm::ivec3& cell, uint32_t number,

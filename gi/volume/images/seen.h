@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "gi/volume/images/depth_tiles.h"
 #include "gi/volume/images/image_voxels.h"
 
 namespace lucarne::gi::volume {
@@ -47,6 +48,29 @@ class VoxelSight {
         if (!(texel.depth > 0)) return Sight::empty;
         if (depth > texel.depth + bias_) return Sight::unknown;
         return depth >= texel.depth - bias_ ? Sight::surface : Sight::empty;
+    }
+
+    /// Whether a surface may be visible in a voxel whose middle is nearer to `place` than `radius`, m.
+    /// `tiles`: of the picture.
+    bool may_show_surface(const glm::vec3& place, float radius, const DepthTiles& tiles) const {
+        glm::vec2 middle;
+        const float depth = project(place, middle);
+        if (depth + radius <= image_.view.origin.w) return false;
+        // x / z is farther from x0 / z0 by (r + r |x0| / z0) / (z0 - r) at most.
+        float reach = radius, turned = 0;
+        if (!is_parallel(image_.view)) {
+            const float nearest = depth - radius;
+            if (!(nearest > 1e-6f * depth)) return true;  // about the viewer
+            reach = radius / nearest;
+            turned = reach;
+        }
+        const glm::vec2 off = reach * glm::vec2(glm::length(right_), glm::length(down_)) +
+                              turned * glm::abs(middle - centre_) + 1.0f;
+        if (!(glm::length(off) + glm::length(middle) < 1e9f)) return true;  // also what is no number
+        const DepthTiles::Range range =
+            tiles.about(middle.x - off.x, middle.y - off.y, middle.x + off.x, middle.y + off.y);
+        const float margin = bias_ + radius + 1e-4f * std::abs(depth);
+        return depth + margin >= range.least && depth - margin <= range.most;
     }
 
     /// Whether nothing speaks against a voxel being empty whose middle is seen to be: no plane of a visible

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/shared/surfel_code.h"
+#include "gi/volume/images/seen.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::volume {
@@ -297,6 +298,35 @@ TEST(ImageVoxels, AreTheSameForAnyNumberOfThreads) {
             return a.cell == b.cell && a.normal == b.normal && a.albedo == b.albedo && a.light == b.light;
         }));
     }
+}
+
+TEST(ImageVoxels, FusedPassesFillTheVoxelsWhoseMiddlesShowASurface) {
+    // Passes skip what no picture can show; here every voxel is asked, also those about a viewer in the
+    // window.
+    const auto room = [](const glm::vec3& from, const glm::vec3& along) {
+        return nearer(one_ball(from, along), nearer(wall(3.6f, from, along), wall(.2f, from, along)));
+    };
+    const std::vector<Taken> pictures = {taken({-2, 1, 5}, kMiddle, room),
+                                         taken({3, .5f, 2.2f}, kMiddle, room),
+                                         taken({.3f, .4f, .4f}, {.3f, 3, .9f}, room, 37)};
+    const glm::ivec3 size(35, 30, 33), low(-3, 1, -2);
+    ImageVoxels voxels(size, kSide, low);
+    std::vector<SeenImage> images;
+    for (const Taken& one : pictures) images.push_back(one.image());
+    voxels.update(images, {.fused = true});
+    size_t filled = 0;
+    for (int i = 0; i < size.x * size.y * size.z; ++i) {
+        const glm::ivec3 cell = low + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y);
+        bool surface = false;
+        for (const SeenImage& image : images) {
+            size_t pixel = 0;
+            surface = surface ||
+                      VoxelSight(image, kSide).at((glm::vec3(cell) + .5f) * kSide, pixel) == Sight::surface;
+        }
+        EXPECT_EQ(voxels.at(cell) != nullptr, surface) << cell.x << " " << cell.y << " " << cell.z;
+        filled += surface;
+    }
+    EXPECT_GT(filled, 1000u);
 }
 
 TEST(ImageVoxels, HostileDepthsFillNothingBeyondTheWindow) {
