@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -15,6 +17,7 @@
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
 #include "gi/lighting/light_samples.h"
+#include "gi/surfels/plane_normals.h"
 #include "gi/tracing/light_sampling.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
@@ -184,7 +187,9 @@ Result<void> LightCutTracer::update(Frame& frame, uint64_t revision) {
     if (tracer_ && revision_ == revision) return {};
     const TimedPass pass(frame, "surfels for tracing");
     tracer_.reset();
-    LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(download_light_surfels(frame)));
+    std::vector<Surfel> surfels = download_light_surfels(frame);
+    add_normals_of_planes(surfels);  // of a scan that is being read: else none of them would cast a shadow
+    LUCARNE_ASSIGN(tracer_, tracing::SurfelTracer::create(std::move(surfels)));
     revision_ = revision;
     return {};
 }

@@ -145,4 +145,27 @@ bool add_plane_normals(std::span<FlatSurfel> surfels) {
     return true;
 }
 
+bool add_normals_of_planes(std::span<Surfel> surfels) {
+    const auto bare = [](const Surfel& s) { return s.normal == glm::vec3(0.0f); };
+    const auto count = static_cast<double>(std::ranges::count_if(surfels, bare));
+    if (count <= kUnknown * static_cast<double>(surfels.size())) return false;
+    std::vector<FlatSurfel> flat;
+    flat.reserve(surfels.size());
+    for (const Surfel& s : surfels)
+        flat.push_back({.x = s.position.x,
+                        .y = s.position.y,
+                        .z = s.position.z,
+                        .radius = s.radius,
+                        .area = s.area,
+                        .normal = 0,
+                        .albedo = bare(s) ? 0 : kSurfelHasNormal,
+                        .material = s.material,
+                        .edges = kNoEdges});
+    if (!add_plane_normals(std::span(flat))) return false;
+    for (size_t i = 0; i < flat.size(); ++i)
+        if (bare(surfels[i]) && (flat[i].albedo & kSurfelHasNormal))
+            surfels[i].normal = decode_octahedral(flat[i].normal);
+    return true;
+}
+
 }  // namespace lucarne::gi

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "gi/shared/flat_surfel.h"
+#include "gi/shared/surfel.h"
 
 namespace lucarne::gi {
 
@@ -12,5 +13,7 @@ namespace lucarne::gi {
 /// surfels in it. Returns whether it gave any. The same surfels give the same normals, whatever the number of
 /// threads.
 bool add_plane_normals(std::span<FlatSurfel> surfels);
+/// The same for surfels on the host. Those without a normal have a zero one.
+bool add_normals_of_planes(std::span<Surfel> surfels);
 
 }  // namespace lucarne::gi

@@ -65,6 +65,18 @@ TEST_F(TracedLightsTest, LightsWithASizeAreSoftInOneFrame) {
         EXPECT_LT(error(engine), 0.002) << engine;
 }
 
+// As while a scan is being read: its points have no normals yet, and are no discs that rays could hit.
+TEST_F(TracedLightsTest, SurfelsWithoutNormalsCastShadows) {
+    scene_.surfels = scenes::closed_box(2, 60, glm::vec3(.6f));
+    for (Surfel& surfel : scene_.surfels) surfel.normal = glm::vec3(0.0f);
+    scene_.camera = scenes::look({.4f, .5f, .6f}, {1.5f, 1.4f, .8f}, 1.0f, 64);
+    scene_.lights = {scenes::wide_sun({.2f, .3f, -1}, .01f, 10)};
+    EXPECT_LT(mean_luminance(render("volume").radiance), .01) << "the room is closed";
+    for (Surfel& surfel : scene_.surfels)
+        if (surfel.position.z > 1.9f) surfel.position.z += 100;
+    EXPECT_GT(mean_luminance(render("volume").radiance), .2) << "without its ceiling the sun shines into it";
+}
+
 // What probing rays tell takes the place of rays: where a light is seen by all of them nothing changes, and
 // where it is hidden nothing arrives.
 TEST_F(TracedLightsTest, ProbesTellWhatPointsSeeOfALight) {
