@@ -14,6 +14,7 @@
 #include "gi/shared/environment.h"
 #include "gi/shared/luminance.h"
 #include "gi/tracing/light_sampling.h"
+#include "io/core/log.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::volume {
@@ -23,6 +24,8 @@ namespace {
 constexpr size_t kMostLobes = size_t{1} << 19;
 /// The sky shines through small windows, so it is carried along so many times as many directions as a bounce.
 constexpr uint32_t kSkyDirections = 4;
+/// Rooms and streets are lost in larger voxels, m.
+constexpr float kWideVoxel = 2;
 /// Texels of the sky that one direction stands for.
 constexpr int kSkySamples = 32;
 
@@ -157,6 +160,11 @@ Result<StepResult> LightMaker::divide(Work& work, size_t number) {
     level.space = std::make_shared<Space>();
     level.space->voxels = level.voxel_maker->finish();
     level.voxel_maker.reset();
+    if (number + 1 == levels_.size() && level.space->grid().voxel > kWideVoxel)
+        log::warn(
+            "volume: voxels are wider than {:.0f} m, and light resolves nothing smaller; choose more "
+            "(--voxels), or levels about the camera (--volume-levels)",
+            kWideVoxel);
     return StepResult::done;
 }
 

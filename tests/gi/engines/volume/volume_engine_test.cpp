@@ -206,5 +206,16 @@ TEST_F(VolumeEngineTest, SurfelsWithoutNormalsReflectLight) {
     EXPECT_NEAR(mean() / known, 1, .05);
 }
 
+TEST_F(VolumeEngineTest, VoxelsThatLoseStreetsAreSaidToBeWide) {
+    const auto said = [&](float side) {
+        const SurfelCloud room(scenes::closed_box(side, 40, glm::vec3(.6f)), {glm::dvec3(-1), side + 2});
+        testing::internal::CaptureStderr();
+        light_up(*device_, *volume_engine().make(), room, camera(), options());
+        return testing::internal::GetCapturedStderr();
+    };
+    EXPECT_EQ(said(40).find("voxels are wider"), std::string::npos);
+    EXPECT_NE(said(200).find("voxels are wider than 2 m"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lucarne::gi
