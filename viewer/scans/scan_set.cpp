@@ -116,6 +116,7 @@ struct ScanSet::Joined {
     Source source;
     Result<StartingView> start;
     std::vector<uint64_t> ids;  ///< of the scans in the source
+    bool grows = false;         ///< more points of them are to come
 };
 
 /// Results of the threads.
@@ -421,12 +422,12 @@ void ScanSet::join_visible() {
     joining_ = true;
     joiner_.push(
         "the open scans",
-        [visible = std::move(visible), ids = std::move(ids),
-         start_of = start_of_]() mutable -> Result<Joined> {
+        [visible = std::move(visible), ids = std::move(ids), start_of = start_of_,
+         grows = std::ranges::any_of(rows_, &ScanRow::grows)]() mutable -> Result<Joined> {
             if (visible.empty()) return Joined{};
             LUCARNE_ASSIGN(Source source, octree::join_sources(std::move(visible)));
             auto start = start_of(*source);
-            return Joined{std::move(source), std::move(start), std::move(ids)};
+            return Joined{std::move(source), std::move(start), std::move(ids), grows};
         },
         [shared = shared_](Result<Joined> joined) {
             {
@@ -451,6 +452,7 @@ void ScanSet::take_joined() {
         return;
     }
     source_ = std::move((*joined)->source);
+    source_grows_ = (*joined)->grows;
     shown_ = std::move((*joined)->ids);
     start_.reset();
     if (!source_) return;
@@ -472,6 +474,10 @@ bool ScanSet::update() {
 
 bool ScanSet::converting() const {
     return std::ranges::any_of(rows_, [](const auto& row) { return row.state == ScanState::converting; });
+}
+
+bool ScanSet::grows() const {
+    return std::ranges::any_of(rows_, &ScanRow::grows) || (source_grows_ && (stale_ || joining_));
 }
 
 bool ScanSet::settled() const {

@@ -55,6 +55,11 @@ struct ScanRow {
         return state == ScanState::opening || state == ScanState::sample || state == ScanState::converting ||
                state == ScanState::elsewhere;
     }
+    /// Whether more of its points are to come.
+    bool grows() const {
+        return visible && (state == ScanState::sample || state == ScanState::converting ||
+                           state == ScanState::elsewhere);
+    }
 };
 
 /// Returns what the window's title says of these scans. Leaves out files that could not be opened.
@@ -114,6 +119,9 @@ class ScanSet {
     /// The ids of the scans that source() shows.
     const std::vector<uint64_t>& shown() const { return shown_; }
     bool converting() const;
+    /// Whether source() lacks points that are to come: also while the scans are whole already, and the source
+    /// that has all of them is still being made.
+    bool grows() const;
     /// Whether no work is pending, so that rows and source() are final.
     bool settled() const;
     /// The error of the first failed scan, or of joining the visible scans.
@@ -147,6 +155,7 @@ class ScanSet {
     std::optional<StartingView> start_;
     std::optional<Error> problem_;  ///< error of joining the visible scans
     bool stale_ = false, joining_ = false;
+    bool source_grows_ = false;                     ///< a scan in it was growing when it was made
     std::chrono::steady_clock::time_point looked_;  ///< for caches of others
     // The last members: they end before the members that their jobs use.
     JobQueue joiner_, opener_;

@@ -39,14 +39,11 @@ double axis(int less, int more) {
     return (ImGui::IsKeyDown(more) ? 1.0 : 0.0) - (ImGui::IsKeyDown(less) ? 1.0 : 0.0);
 }
 
-/// Returns whether more points of a visible scan are to come.
-bool grows(const ScanRow& row) {
-    return row.visible && (row.state == ScanState::sample || row.state == ScanState::converting ||
-                           row.state == ScanState::elsewhere);
-}
-/// Returns whether points of a visible scan are missing.
-bool is_sketch(const ScanRow& row) {
-    return grows(row) || (row.visible && row.state == ScanState::stopped);
+/// Returns whether points of visible scans are missing.
+bool is_sketch(const ScanSet& scans) {
+    return scans.grows() || std::ranges::any_of(scans.rows(), [](const ScanRow& row) {
+               return row.visible && row.state == ScanState::stopped;
+           });
 }
 
 constexpr double kQuickScale = 0.5;  ///< of the first picture that a slow engine makes of another light
@@ -313,7 +310,7 @@ void ViewSession::follow_scans() {
                   model_.view.picture->stats.view_points);
     if (placed_ && scans_.rows().empty()) project_.close();
     if (seen || (!scans_.source() && scans_.settled())) scans_.convert_next();
-    model_.lights.preparation.grows = std::ranges::any_of(scans_.rows(), is_sketch);
+    model_.lights.preparation.grows = is_sketch(scans_);
     window_.set_title("Lucarne - " + scans_title(scans_.rows()));
 }
 
@@ -405,8 +402,7 @@ void ViewSession::take_input() {
 
 void ViewSession::draw_panels() {
     draw_overlay(model_.styling());
-    if (!std::ranges::any_of(scans_.rows(), grows) && !is_preparing(model_.lighting()))
-        draw_convergence(model_.view);
+    if (!scans_.grows() && !is_preparing(model_.lighting())) draw_convergence(model_.view);
     follow_bookmarks();  // after the keys, so that a bookmark set in the last frame is saved
     draw_menu_bar(model_, actions_);
     if (scans_.rows().empty()) draw_start_page(model_);
@@ -454,7 +450,7 @@ void ViewSession::send_request() {
     request.frame.front_only = looks_in_from_outside(model_.view.site, request.frame.camera);
     request.frame.size = scaled_size(window_.framebuffer(), model_.view.resolution_scale);
     // Averages and slow light would take the processors from what replaces them.
-    const bool sketch = std::ranges::any_of(scans_.rows(), grows);
+    const bool sketch = scans_.grows();
     request.frame.accumulate = !request.moving && !sketch && !is_preparing(model_.lighting());
     if (shot_) request.pictures = shot_->pictures;
     relit_ = relit_ && !request.moving;
@@ -482,7 +478,7 @@ void ViewSession::send_request() {
                                          ? gi::StepBudget::paused()
                                          : gi::StepBudget::timed(kLightShare * model_.view.frame_time);
     }
-    if (std::ranges::any_of(scans_.rows(), is_sketch))
+    if (is_sketch(scans_))
         request.frame.most_pixels =
             std::max(1.5f, scaled(kSketchDots) * request.frame.size.height / window_.framebuffer().height);
     const bool goes_on = sent_.moving && !sent_.sketch;

@@ -304,6 +304,28 @@ TEST_F(OpenScans, AreDrawnTogetherHiddenAndClosedAndABrokenOneStopsOnlyItself) {
     EXPECT_EQ(set_.source(), nullptr);
 }
 
+// Slow light of the sketch would be begun otherwise, and shown when the whole scan is long there.
+TEST_F(OpenScans, GrowUntilTheSourceThatHasAllPointsIsThere) {
+    const std::string scan = folder_ / "a.las";
+    ASSERT_EQ(test::lucarne("generate cornell --points 20k -o " + scan).code, 0);
+    set_.open({scan});
+    std::shared_ptr<const octree::NodeSource> sketch;
+    int whole_before_its_source = 0;
+    ASSERT_TRUE(eventually([&] {
+        set_.convert_next();
+        set_.seen();
+        const bool whole = set_.rows()[0].state == ScanState::whole;
+        if (!whole) sketch = set_.source();
+        if (whole && sketch && set_.source() == sketch && !set_.settled()) {
+            ++whole_before_its_source;
+            EXPECT_TRUE(set_.grows());
+        }
+        return set_.settled();
+    }));
+    EXPECT_FALSE(set_.grows());
+    if (whole_before_its_source == 0) GTEST_SKIP() << "the source was there before the scan was whole";
+}
+
 TEST_F(OpenScans, AFileThatIsOpenedAgainSaysAgainWhatIsWrongWithIt) {
     const std::string odd = folder_ / "odd.las", broken = folder_ / "broken.las";
     ASSERT_EQ(test::lucarne("generate cornell --points 5k -o " + odd).code, 0);
