@@ -10,6 +10,10 @@ inline size_t flat_count(const DeviceCut& cut) {
     return size_t{cut.blocks()} * kBlockSurfels;
 }
 
+/// Returns place, size and normal of a surfel on the host, without its colour. What is no unit vector is no
+/// normal.
+FlatSurfel flat_disc(const Surfel& surfel);
+
 /// Decodes the cut's surfels into flat_count(cut) FlatSurfels, for devices other than OpenGL. `flat` grows
 /// as needed. Errors: device memory.
 Result<void> flatten(Device& device, const DeviceCut& cut, Buffer& flat);

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/shared/surfel_code.h"
+#include "gi/surfels/flat_surfels.h"
 #include "io/core/parallel.h"
 #include "octree/normals/surface/plane.h"
 #include "octree/tree/key.h"
@@ -151,16 +152,7 @@ bool add_normals_of_planes(std::span<Surfel> surfels) {
     if (count <= kUnknown * static_cast<double>(surfels.size())) return false;
     std::vector<FlatSurfel> flat;
     flat.reserve(surfels.size());
-    for (const Surfel& s : surfels)
-        flat.push_back({.x = s.position.x,
-                        .y = s.position.y,
-                        .z = s.position.z,
-                        .radius = s.radius,
-                        .area = s.area,
-                        .normal = 0,
-                        .albedo = bare(s) ? 0 : kSurfelHasNormal,
-                        .material = s.material,
-                        .edges = kNoEdges});
+    for (const Surfel& surfel : surfels) flat.push_back(flat_disc(surfel));
     if (!add_plane_normals(std::span(flat))) return false;
     for (size_t i = 0; i < flat.size(); ++i)
         if (bare(surfels[i]) && (flat[i].albedo & kSurfelHasNormal))

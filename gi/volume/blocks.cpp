@@ -151,8 +151,8 @@ uint64_t blocks_touched(uint64_t blocks, const glm::vec3& place, const glm::vec3
     // Two convex bodies are apart if they are along a normal of a face of one (the blocks are in the box), or
     // along a direction across an edge of each (Gottschalk et al. 1996, "OBBTree"). Opposite edges of an
     // octagon are parallel.
-    constexpr size_t kDirections = 12;
-    float x[kDirections], y[kDirections], z[kDirections], most[kDirections];
+    constexpr size_t kEdgeNormals = 12;
+    float x[kEdgeNormals], y[kEdgeNormals], z[kEdgeNormals], most[kEdgeNormals];
     const Octagon octagon(normal, radius);
     const glm::vec3 u = octagon.u, v = octagon.v;
     size_t k = 0;
@@ -167,7 +167,7 @@ uint64_t blocks_touched(uint64_t blocks, const glm::vec3& place, const glm::vec3
     for (; near != 0; near &= near - 1) {
         const glm::vec3 way = from_place(std::countr_zero(near));
         int apart = 0;
-        for (size_t i = 0; i < kDirections; ++i)
+        for (size_t i = 0; i < kEdgeNormals; ++i)
             apart |= std::abs(x[i] * way.x + y[i] * way.y + z[i] * way.z) > most[i];
         if (!apart) found |= near & (~near + 1);
     }

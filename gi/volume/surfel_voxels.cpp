@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "gi/shared/surfel_code.h"
+#include "gi/surfels/flat_surfels.h"
 #include "gi/tracing/surfel_tracer.h"
 #include "gi/volume/voxel_sums.h"
 #include "gi/volume/voxels.h"
@@ -15,18 +15,10 @@ namespace {
 std::vector<FlatSurfel> flat_discs(std::span<const Surfel> surfels) {
     std::vector<FlatSurfel> flat;
     flat.reserve(surfels.size());
-    for (const Surfel& s : surfels)
-        flat.push_back({.x = s.position.x,
-                        .y = s.position.y,
-                        .z = s.position.z,
-                        .radius = tracing::has_disc(s) ? s.radius : 0.0f,
-                        .area = s.area,
-                        .normal = 0,
-                        .albedo = kSurfelHasNormal,
-                        .material = s.material,
-                        .edges = kNoEdges});
-    for (size_t i = 0; i < flat.size(); ++i)
-        if (flat[i].radius > 0) flat[i].normal = encode_octahedral(surfels[i].normal);
+    for (const Surfel& surfel : surfels) {
+        flat.push_back(flat_disc(surfel));
+        if (!tracing::has_disc(surfel)) flat.back().radius = 0;
+    }
     return flat;
 }
 

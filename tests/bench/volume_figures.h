@@ -27,12 +27,9 @@ struct PropagationScene {
     int figure = 53;
     std::string scan, sampling, scene, camera;
     uint32_t iterations = 11;
-    std::string thesis;  ///< its row of table 2
+    std::string thesis;   ///< its row of table 2
+    uint32_t levels = 1;  ///< of the row with nested volumes about the camera; 1: there is none
 };
-
-inline std::string name_of(gi::volume::Transport transport) {
-    return std::string(gi::volume::kTransports[static_cast<size_t>(transport)]);
-}
 
 /// Prints a row of table 2 for each transport, with the error of one bounce and of the whole picture, and
 /// writes the figure's pictures: fig-53-direct.png, fig-53-sh-bounce-1.png, fig-53-sh.png, ...
@@ -59,22 +56,32 @@ inline Result<void> row_of_table_2(gi::Device& device, const BenchRun& run, cons
     LUCARNE_TRY(write("reference"));
     LUCARNE_ASSIGN(const Scan::Truth bounce_truth, stage.truth(bounce, paths));
     LUCARNE_TRY(write("reference-bounce-1"));
-    for (const Transport transport : {Transport::sh, Transport::sweeps}) {
-        whole.set(gi::volume::kTransport, transport);
-        bounce.set(gi::volume::kTransport, transport);
+    struct Way {
+        std::string name;
+        Transport transport;
+        uint32_t levels;
+    };
+    std::vector<Way> ways = {{"sh", Transport::sh, 1}, {"sweeps", Transport::sweeps, 1}};
+    if (scene.levels > 1)
+        ways.push_back({fmt::format("{} levels", scene.levels), Transport::sweeps, scene.levels});
+    for (const auto& [name, transport, levels] : ways) {
+        for (gi::EngineSettings* settings : {&whole, &bounce}) {
+            settings->set(gi::volume::kTransport, transport);
+            settings->set(gi::volume::kVolumeLevels, levels);
+        }
         LUCARNE_TRY(stage.picture("direct", whole));  // so that the engine is made anew
         LUCARNE_TRY(write("direct"));
         LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture("volume", whole));
-        LUCARNE_TRY(write(name_of(transport)));
+        LUCARNE_TRY(write(name));
         LUCARNE_ASSIGN(const auto error,
                        gi::compare_with_halves(picture.pixels, whole_truth.first, whole_truth.second));
         const viewer::FrameStats steps = picture.last;
         LUCARNE_ASSIGN(const Stage::Picture only, stage.picture("volume", bounce));
-        LUCARNE_TRY(write(name_of(transport) + "-bounce-1"));
+        LUCARNE_TRY(write(name + "-bounce-1"));
         const auto ms = [&](const char* pass) { return 1e3 * pass_seconds(steps, pass); };
         const double indirect = gi::mean_luminance(bounce_truth.whole);
-        fmt::print("{:<12} {:>9.0f} {:>7} {:>10} {:>8.0f} {:>11.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>9.3f}\n",
-                   scene.scene, statistic(steps, "occupied_voxels"), name_of(transport),
+        fmt::print("{:<12} {:>9.0f} {:>9} {:>10} {:>8.0f} {:>11.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>9.3f}\n",
+                   scene.scene, statistic(steps, "occupied_voxels"), name,
                    transport == Transport::sh ? std::to_string(scene.iterations) : "-",
                    ms("voxels") + ms("faces"), ms("propagation") + ms("first bounce") + ms("sweep"),
                    ms("light of the volume"), 1e3 * picture.seconds,
@@ -111,13 +118,13 @@ inline Result<void> figures_of_chapter_5(gi::Device& device, const BenchRun& run
     heading(
         "table 2 and figs 53 to 57: one bounce, 512x512, 32 voxels, ms; energy of bounce 1 and relMSE of the "
         "picture against the reference (the thesis, GTX 285: ms of voxelization, propagation, all)");
-    fmt::print("{:<12} {:>9} {:>7} {:>10} {:>8} {:>11} {:>9} {:>9} {:>9} {:>9}\n", "scene", "occupied", "by",
+    fmt::print("{:<12} {:>9} {:>9} {:>10} {:>8} {:>11} {:>9} {:>9} {:>9} {:>9}\n", "scene", "occupied", "by",
                "iterations", "voxels", "propagation", "pixels", "all", "energy %", "relMSE");
     for (const PropagationScene& scene : run.cases<PropagationScene>(
              {{53, "cornell", "--even --normals", "cornell", "", 11, "test scene, 48 triangles: 10, 12, 22"},
               {54, "house", "", "house", "daylight", 64, "room, 704 triangles: 3, 61, 69"},
               {55, "nave", "--even --normals", "nave", "", 11, "Sponza, 66454 triangles: 10, 11, 28"},
-              {56, "survey", "", "survey-sky", "street", 12, "arena, 10219 triangles: 3, 13, 21"}}))
+              {56, "survey", "", "survey-sky", "street", 12, "arena, 10219 triangles: 3, 13, 21", 4}}))
         LUCARNE_TRY(row_of_table_2(device, run, scene));
     return far_light(device, run);
 }
