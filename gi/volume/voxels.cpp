@@ -158,6 +158,7 @@ Result<bool> VoxelMaker::advance() {
                 if (own.size() - counted < kSurfelsAPiece) continue;
                 parts_ += own.size() - counted;
                 counted = own.size();
+                if (parts_.load(std::memory_order_relaxed) > most_) break;
             }
         }
         parts_ += own.size() - counted;

@@ -38,59 +38,73 @@ constexpr size_t kMostRim = 64;  ///< places of the rim from which a hole's colo
 constexpr std::array<glm::ivec2, 8> kAround = {
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
 
-/// What is known of a cell: nothing, that it is in a component, in a hole or its rim, or outside of the
-/// plane.
-constexpr uint8_t kNoLabel = 0, kOfComponent = 1, kTaken = 2, kOutside = 3;
+/// What is known of a cell: nothing, that it is in a component, in a hole, in the hole that is being made or
+/// beside it, or outside of the plane.
+constexpr uint8_t kNoLabel = 0, kOfComponent = 1, kTaken = 2, kOfThisHole = 3, kOutside = 4;
+/// Marks for the search of the outside take at most so many times the cells of the grid, and so many more.
+constexpr double kMostMarks = 2, kMoreMarks = 1 << 22;
 
-/// Marks of cells, with a margin around the plane's grid.
+/// Marks of cells, with a margin around the plane's grid; a byte for each.
 class CellMarks {
  public:
     CellMarks(const PlaneGrid& grid, int margin)
         : margin_(margin),
-          width_(grid.width() + 2 * margin),
-          height_(grid.height() + 2 * margin),
-          marked_(static_cast<size_t>(width_) * static_cast<size_t>(height_), 0) {}
+          width_(static_cast<size_t>(grid.width() + 2 * margin)),
+          height_(static_cast<size_t>(grid.height() + 2 * margin)),
+          marked_(width_ * height_, 0) {}
+
+    static double cells_of(const PlaneGrid& grid, int margin) {
+        return (double(grid.width()) + 2 * margin) * (double(grid.height()) + 2 * margin);
+    }
 
     /// Cells of the plane's grid; those of the margin are outside of it.
-    uint8_t& operator[](const glm::ivec2& cell) { return at(cell.x + margin_, cell.y + margin_); }
+    uint8_t& operator[](const glm::ivec2& cell) {
+        return marked_[static_cast<size_t>(cell.y + margin_) * width_ +
+                       static_cast<size_t>(cell.x + margin_)];
+    }
     /// Marks the squares around all marked cells.
-    void spread(int reach) {
-        spread_along(reach, {1, 0});
-        spread_along(reach, {0, 1});
+    void spread(size_t reach) {
+        for (size_t y = 0; y < height_; ++y) spread_along(y * width_, 1, width_, reach);
+        for (size_t x = 0; x < width_; ++x) spread_along(x, width_, height_, reach);
     }
     /// Marks what can be reached from the margin without passing a marked cell, instead of what was marked.
     void mark_reached() {
-        std::vector<glm::ivec2> reached = {{0, 0}};
-        at(0, 0) = 2;
-        for (size_t next = 0; next < reached.size(); ++next)
-            for (size_t i = 0; i < 4; ++i) {
-                const glm::ivec2 to = reached[next] + kAround[i];
-                if (!inside(to) || at(to.x, to.y) != 0) continue;
-                at(to.x, to.y) = 2;
-                reached.push_back(to);
+        constexpr uint8_t kReached = 2;
+        std::vector<size_t> border = {0}, next;
+        marked_[0] = kReached;
+        const auto enter = [&](size_t to) {
+            if (marked_[to] != 0) return;
+            marked_[to] = kReached;
+            next.push_back(to);
+        };
+        for (; !border.empty(); border.swap(next), next.clear())
+            for (const size_t from : border) {
+                const size_t x = from % width_, y = from / width_;
+                if (x > 0) enter(from - 1);
+                if (x + 1 < width_) enter(from + 1);
+                if (y > 0) enter(from - width_);
+                if (y + 1 < height_) enter(from + width_);
             }
-        for (uint8_t& mark : marked_) mark = mark == 2;
+        for (uint8_t& mark : marked_) mark = mark == kReached;
     }
 
  private:
-    bool inside(const glm::ivec2& at) const {
-        return at.x >= 0 && at.y >= 0 && at.x < width_ && at.y < height_;
-    }
-    uint8_t& at(int x, int y) {
-        return marked_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)];
-    }
-    void spread_along(int reach, const glm::ivec2& step) {
-        const std::vector<uint8_t> before = marked_;
-        for (int y = 0; y < height_; ++y)
-            for (int x = 0; x < width_; ++x) {
-                if (!before[static_cast<size_t>(&at(x, y) - marked_.data())]) continue;
-                for (int i = -reach; i <= reach; ++i)
-                    if (const glm::ivec2 to = glm::ivec2(x, y) + i * step; inside(to)) at(to.x, to.y) = 1;
-            }
+    /// Marks what is within `reach` of a marked cell of a line of `length` cells.
+    void spread_along(size_t first, size_t step, size_t length, size_t reach) {
+        line_.resize(length);
+        for (size_t i = 0; i < length; ++i) line_[i] = marked_[first + i * step];
+        size_t around = 0;  // marked cells within reach
+        for (size_t i = 0; i < std::min(reach, length); ++i) around += line_[i];
+        for (size_t i = 0; i < length; ++i) {
+            if (i + reach < length) around += line_[i + reach];
+            if (i > reach) around -= line_[i - reach - 1];
+            marked_[first + i * step] = around > 0;
+        }
     }
 
-    int margin_, width_, height_;
-    std::vector<uint8_t> marked_;
+    int margin_;
+    size_t width_, height_;
+    std::vector<uint8_t> marked_, line_;
 };
 
 }  // namespace
@@ -145,22 +159,31 @@ bool HoleFinder::is_core(const glm::ivec2& cell) const {
            });
 }
 
-void HoleFinder::find_outside() {
-    CellMarks marks(grid_, 2 * leak_ + 1);
+bool HoleFinder::find_outside() {
+    const int margin = 2 * leak_ + 1;
+    const double cells = static_cast<double>(grid_.width()) * grid_.height();
+    if (CellMarks::cells_of(grid_, margin) > kMostMarks * cells + kMoreMarks) return false;
+    CellMarks marks(grid_, margin);
+    bool any = false;
     for (int y = 0; y < grid_.height(); ++y)
-        for (int x = 0; x < grid_.width(); ++x) marks[{x, y}] = bounds(state({x, y}));
-    marks.spread(leak_);
+        for (int x = 0; x < grid_.width(); ++x) {
+            marks[{x, y}] = bounds(state({x, y}));
+            any = any || is_core({x, y});
+        }
+    if (!any) return false;
+    marks.spread(static_cast<size_t>(leak_));
     marks.mark_reached();
-    marks.spread(leak_);
+    marks.spread(static_cast<size_t>(leak_));
     for (int y = 0; y < grid_.height(); ++y)
         for (int x = 0; x < grid_.width(); ++x)
             if (marks[{x, y}] && is_core({x, y})) label_[grid_.index(x, y)] = kOutside;
+    return true;
 }
 
 void HoleFinder::find_components() {
     label_.assign(static_cast<size_t>(grid_.width()) * static_cast<size_t>(grid_.height()), kNoLabel);
     components_.clear();
-    if (leak_ > 0) find_outside();
+    if (leak_ > 0 && !find_outside()) return;
     for (int y = 0; y < grid_.height(); ++y)
         for (int x = 0; x < grid_.width(); ++x)
             if (label_[grid_.index(x, y)] == kNoLabel && is_core({x, y})) grow({x, y});
@@ -304,11 +327,11 @@ Hole HoleFinder::hole_of(const Component& component) {
     Hole hole{.plane = plane_, .cells = component.cells, .edges = {}, .creases = {}, .shores = {}, .rim = {}};
     std::vector<uint32_t> rim;
     const auto take = [&](uint32_t index, std::vector<uint32_t>& into) {
-        if (label_[index] == kTaken || label_[index] == kOutside) return;
-        label_[index] = kTaken;  // not again for this hole
+        if (label_[index] >= kTaken) return;
+        label_[index] = kOfThisHole;
         into.push_back(index);
     };
-    for (const uint32_t cell : component.cells) label_[cell] = kTaken;
+    for (const uint32_t cell : component.cells) label_[cell] = kOfThisHole;
     for (const uint32_t cell : component.cells)
         for (const glm::ivec2& step : kAround) {
             const glm::ivec2 to = grid_.cell_at(cell) + step;
@@ -329,6 +352,8 @@ Hole HoleFinder::hole_of(const Component& component) {
     for (const uint32_t cell : hole.creases) label_[cell] = kNoLabel;
     std::ranges::sort(rim);
     for (const uint32_t cell : rim) hole.shores.push_back({cell, quarters_beside_hole(cell)});
+    for (const auto* cells : {&hole.cells, &hole.edges})
+        for (const uint32_t cell : *cells) label_[cell] = kTaken;
     const size_t step = std::max<size_t>(1, rim.size() / kMostRim);
     for (size_t i = 0; i < rim.size(); i += step) add_rim(hole, rim[i]);
     return hole;
@@ -337,19 +362,19 @@ Hole HoleFinder::hole_of(const Component& component) {
 uint8_t HoleFinder::quarters_beside_hole(uint32_t index) const {
     uint8_t quarters = 0;
     const glm::ivec2 cell = grid_.cell_at(index);
-    const auto taken = [&](int x, int y) {
-        return grid_.inside(x, y) && label_[grid_.index(x, y)] == kTaken;
+    const auto in_hole = [&](int x, int y) {
+        return grid_.inside(x, y) && label_[grid_.index(x, y)] == kOfThisHole;
     };
     for (int quarter = 0; quarter < 4; ++quarter) {
         const int x = cell.x + (quarter & 1 ? 1 : -1), y = cell.y + (quarter & 2 ? 1 : -1);
-        if (taken(x, cell.y) || taken(cell.x, y) || taken(x, y))
+        if (in_hole(x, cell.y) || in_hole(cell.x, y) || in_hole(x, y))
             quarters |= static_cast<uint8_t>(1 << quarter);
     }
     return quarters;
 }
 
 void HoleFinder::add_rim(Hole& hole, uint32_t index) const {
-    RimPlace place;
+    HoleRimPlace place;
     float count = 0;
     const glm::ivec2 cell = grid_.cell_at(index);
     for (int y = cell.y - 1; y <= cell.y + 1; ++y)
@@ -370,7 +395,7 @@ void HoleFinder::add_rim(Hole& hole, uint32_t index) const {
 }
 
 bool HoleFinder::steep(const Hole& hole, const Component& component) const {
-    const auto [low, high] = std::ranges::minmax(hole.rim, {}, &RimPlace::height);
+    const auto [low, high] = std::ranges::minmax(hole.rim, {}, &HoleRimPlace::height);
     return high.height - low.height > kSteep * diameter(component);
 }
 

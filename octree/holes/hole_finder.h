@@ -13,7 +13,7 @@
 namespace lucarne::octree {
 
 /// A place of a hole's rim.
-struct RimPlace {
+struct HoleRimPlace {
     glm::vec2 flat{0.0f};
     float height = 0;
     glm::vec3 normal{0.0f}, colour{0.0f};
@@ -32,7 +32,7 @@ struct Hole {
     std::vector<uint32_t> edges;    ///< hidden cells beside these; they may be beyond a crease
     std::vector<uint32_t> creases;  ///< cells that a crease divides
     std::vector<Shore> shores;      ///< cells of its rim: parts of them may be empty
-    std::vector<RimPlace> rim;
+    std::vector<HoleRimPlace> rim;
 };
 
 /// A round hole of a floor, below a tripod.
@@ -94,8 +94,9 @@ class HoleFinder {
     bool is_core(const glm::ivec2& cell) const;
 
     /// Finds the hidden cells to which a square of 2 leak + 1 cells leads from the rim of the grid without
-    /// touching the plane's surface or a crease.
-    void find_outside();
+    /// touching the plane's surface or a crease. Returns false if there is nothing to find, or if it would
+    /// take too much memory.
+    bool find_outside();
     void find_components();
     void grow(const glm::ivec2& seed);
 

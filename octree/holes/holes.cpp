@@ -55,7 +55,7 @@ float median_spacing(const HoleSample& sample) {
 FillPoint interpolated(const Hole& hole, const PlaneGrid& grid, const glm::vec2& flat) {
     FillPoint point;
     float weights = 0, height = 0;
-    for (const RimPlace& place : hole.rim) {
+    for (const HoleRimPlace& place : hole.rim) {
         const glm::vec2 offset = place.flat - flat;
         const float squared = glm::dot(offset, offset) + grid.cell() * grid.cell();
         const float weight = 1 / (squared * std::sqrt(squared));
@@ -188,7 +188,9 @@ class HoleSearch {
     /// Fills each cell with `parts`^2 points, and the rim's cells if `shores`.
     void fill(const Hole& hole, int parts, bool shores, std::vector<FillPoint>& points) const {
         const PlaneGrid& grid = grids_[hole.plane];
-        const glm::vec3 inside = grid.place_of(grid.flat_of(grid.cell_at(hole.cells.front())));
+        glm::vec2 middle(0.0f);  // a single cell may lie beyond a crease that has a gap
+        for (const uint32_t cell : hole.cells) middle += grid.flat_of(grid.cell_at(cell));
+        const glm::vec3 inside = grid.place_of(middle / static_cast<float>(hole.cells.size()));
         // Adds the i-th of along^2 points of a cell.
         const auto add_point = [&](uint32_t cell, int i, int along, bool divided) {
             const float pitch = 1 / static_cast<float>(along);

@@ -29,7 +29,7 @@ constexpr double kCurtain = 0.3;
 constexpr float kRough = 64;  ///< crowding from which kCurtain is used
 
 /// Least |n.n'| of a side of a crease and its whole neighbourhood where no station is known: 53 degrees, so
-/// that both sides of a right-angled edge count. Sides that turn farther face any way.
+/// that both sides of a right-angled edge count. Sides that turn farther may face either way.
 constexpr float kLeastTurn = 0.6f;
 /// Below this |n.n'| the whole neighbourhood does not tell which way a side faces, but its
 /// station does.

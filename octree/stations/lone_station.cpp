@@ -37,6 +37,7 @@ constexpr int kMostRounds = 50;  ///< with each of these
 /// larger: so many times, and by so much, at this distance in any direction, m. (Twice around the station of
 /// a real room; at most 1.15 times in the flattest direction around places that are none.)
 constexpr double kMostHidden = 0.03, kRise = 1.5, kRiseBy = 3e-5;
+constexpr double kRisePoints = 12;  ///< and by so many points
 constexpr float kElsewhere = 0.3f;
 
 class HiddenPoints {
@@ -54,7 +55,7 @@ class HiddenPoints {
         nearest_.resize(size_t{6} * side_ * side_);
     }
 
-    bool empty() const { return points_.empty(); }
+    size_t count() const { return points_.size(); }
     /// Returns the share of the points that others hide from a place.
     double share(const glm::vec3& place) {
         std::ranges::fill(nearest_, HUGE_VALF);
@@ -81,17 +82,17 @@ constexpr std::array<glm::vec3, 6> kSixWays = {
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
 /// The place from which the fewest points are hidden, of those that were tried.
-struct Place {
+struct TriedPlace {
     glm::vec3 at{0.0f};
     double hidden = 1;
 };
 
-void try_place(HiddenPoints& hidden, const glm::vec3& at, Place& best) {
+void try_place(HiddenPoints& hidden, const glm::vec3& at, TriedPlace& best) {
     if (const double share = hidden.share(at); share < best.hidden) best = {at, share};
 }
 
 /// Goes from the best place to better ones beside it until there are none.
-void descend(HiddenPoints& hidden, std::span<const float> steps, Place& best) {
+void descend(HiddenPoints& hidden, std::span<const float> steps, TriedPlace& best) {
     for (const float step : steps)
         for (int round = 0; round < kMostRounds; ++round) {
             const glm::vec3 from = best.at;
@@ -105,8 +106,8 @@ void descend(HiddenPoints& hidden, std::span<const float> steps, Place& best) {
 std::optional<glm::vec3> find_lone_station(std::span<const glm::vec3> points, const glm::vec3& below) {
     if (points.size() < kFewestPoints) return std::nullopt;
     HiddenPoints coarse(points, kCoarsePoints, kCoarseSide);
-    if (coarse.empty()) return std::nullopt;
-    Place best{.at = below};
+    if (coarse.count() == 0) return std::nullopt;
+    TriedPlace best{.at = below};
     for (float height = kLeastHeight; height <= kMostHeight; height += kHeightStep)
         try_place(coarse, below + glm::vec3(0, 0, height), best);
     descend(coarse, kCoarseSteps, best);
@@ -117,9 +118,9 @@ std::optional<glm::vec3> find_lone_station(std::span<const glm::vec3> points, co
     if (!(best.hidden <= kMostHidden) || !(height >= kLeastHeight && height <= kMostHeight) ||
         !(glm::distance(best.at, below) < 2 * kMostHeight))
         return std::nullopt;
+    const double more = best.hidden + std::max(kRiseBy, kRisePoints / static_cast<double>(fine.count()));
     for (const glm::vec3& around : kSixWays)
-        if (!(fine.share(best.at + kElsewhere * around) >=
-              std::max(kRise * best.hidden, best.hidden + kRiseBy)))
+        if (!(fine.share(best.at + kElsewhere * around) >= std::max(kRise * best.hidden, more)))
             return std::nullopt;
     return best.at;
 }

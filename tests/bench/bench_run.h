@@ -85,7 +85,7 @@ inline std::string read_arguments(int argc, char** argv, const BenchWords& words
             else if (run.folder.empty() && argument.find_first_not_of("0123456789") != std::string::npos)
                 run.folder = argument;
             else  // a part that does not exist, or a subject that is written wrongly
-                return argument;
+                return argument.empty() ? "(empty)" : argument;
             continue;
         }
         const std::string name = argument.substr(2);

@@ -206,6 +206,7 @@ class SpacingMap {
     }
     /// Whether a point lies within `reach` (m, .1 at most) of a place, in a surface with about this normal.
     bool has_point(const glm::dvec3& place, const glm::dvec3& normal, double reach) const {
+        reach = std::min(reach, kCell);
         bool found = false;
         visit(place, [&](const gi::Surfel& surfel, double squared) {
             found |= squared < reach * reach && plane_angle(glm::dvec3(surfel.normal), normal) < kSamePlane;

@@ -477,7 +477,7 @@ bool ScanSet::converting() const {
 }
 
 bool ScanSet::grows() const {
-    return std::ranges::any_of(rows_, &ScanRow::grows) || (source_grows_ && (stale_ || joining_));
+    return std::ranges::any_of(rows_, &ScanRow::grows) || (source_grows_ && !settled());
 }
 
 bool ScanSet::settled() const {
