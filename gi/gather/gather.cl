@@ -1,10 +1,10 @@
 // Gathers light at points: draws the tree of surfels into a small picture of the half space above each point, one
-// work-item a point. Ritschel et al. 2009, "Micro-rendering for scalable, parallel final gathering", section 2.2.
+// work-item for LUCARNE_LANES points. Ritschel et al. 2009, "Micro-rendering for scalable, parallel final gathering",
+// section 2.2.
 //
 // A pixel is a ray, and a disc covers it if the ray meets the disc. The picture is the unit disc on which directions
 // are projected along the normal (Nusselt), so that equal areas of it are equal shares of the irradiance: a square of
-// LUCARNE_GRID pixels a side about it, in rows of LUCARNE_ROW, which leave room for vectors of eight behind the last
-// pixel.
+// LUCARNE_GRID pixels a side about it.
 #include "gi/gather/gather_point.h"
 #include "gi/gather/micro_buffer.cl"
 #include "gi/shared/lobe.h"
@@ -14,13 +14,21 @@
 // rays), pictures of two seeds differ by a relMSE of .68 without, .11 with 4, .05 with 8 and .02 with 16; the mean of 8
 // frames differs from that of 150 without by .016, .019 and .025, and by .2 to .3 % in energy.
 #define kRaysALobe 8.0f
+// What is farther than so many lifts for each pixel of a side of a picture that shows a half space appears less than a
+// quarter of a pixel from where the surface would see it.
+#define NEAR 2.0f
+
+// Returns the direction of a pixel, zero where it has no ray.
+float3 direction_of(const Pixel* pixel, int lane) {
+    return (float3)(LANE(float, pixel->x, lane), LANE(float, pixel->y, lane), LANE(float, pixel->z, lane));
+}
 
 // Returns the slot whose light the surface receives from a direction. Rays start above the surface to clear its noise,
 // and so would see everything from too near. Therefore the light is that of the point where the line from the surface
 // itself meets the plane of the disc; the pixel that shows that point knows its slot. `lifted`: from the surface to
 // the start, along the axes of the picture.
-uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float depth, float3 ray, float3 direction,
-               float3 lifted, float3 position, float lift, float scale) {
+uint seen_slot(global const WideNode* nodes, const Pixel* picture, int lane, uint slot, float depth, float3 ray,
+               float3 direction, float3 lifted, float3 position, float lift, float scale) {
     float3 axis = slot_axis(nodes, slot);
     float straight = dot(axis, slot_middle(nodes, slot) - position) / dot(axis, direction);
     if (!(straight > 0.0f) || fabs(straight - depth) > MOST_SHIFT * lift) return slot;
@@ -29,8 +37,9 @@ uint seen_slot(global const WideNode* nodes, const uint* slots, uint slot, float
     float pixels = rsqrt(dot(seen, seen)) * (0.5f * GRID / scale);
     int i = clamp((int)(seen.x * pixels + 0.5f * GRID), 0, GRID - 1);
     int j = clamp((int)(seen.y * pixels + 0.5f * GRID), 0, GRID - 1);
-    uint other = slots[j * ROW + i];
-    if (other == EMPTY || other == slot) return slot;
+    uint other = LANE(uint, picture[j * GRID + i].side, lane);
+    if (other == EMPTY || other / 2 == slot) return slot;
+    other /= 2;
     // It has to be the same surface, not what stands beside it.
     float3 point = position + direction * straight;
     float away = fabs(dot(slot_axis(nodes, other), point - slot_middle(nodes, other)));
@@ -69,7 +78,8 @@ Place place_of(global const WideNode* nodes, GatherPoint point, global const flo
     place.scale = point.scale;
     place.shown = point.viewer.x != 0.0f || point.viewer.y != 0.0f || point.viewer.z != 0.0f;
     float3 axis = place.axis;
-    float angle = 6.28318531f * fractions_of(point.seed).s0;
+    Floats turn = fractions_of((Numbers)(point.seed / sets));  // what is drawn together has the same
+    float angle = 6.28318531f * LANE(float, turn, 0);
     float3 u = normalize(cross(fabs(axis.x) > 0.5f ? (float3)(0, 1, 0) : (float3)(1, 0, 0), axis));
     place.side = cos(angle) * u + sin(angle) * cross(axis, u);
     place.across = cross(axis, place.side);
@@ -83,36 +93,69 @@ float3 ray_of(Place place, int pixel) {
     return (float3)(x, y, sqrt(fmax(1.0f - x * x - y * y, 0.0f)));
 }
 
-// Sets the directions of all pixels, zero where there is none above the surface, and an empty picture.
-void clear(Place place, float* directions, float* depths, uint* slots) {
-    for (int i = 0; i < PIXELS; i += 8) {
-        float8 x = vload8(0, place.set + i), y = vload8(0, place.set + PIXELS + i);
-        int8 none = x > 1.0f;
-        x *= place.scale;
-        y *= place.scale;
-        float8 z = sqrt(fmax(1.0f - x * x - y * y, 0.0f));
-        float8 dx = place.side.x * x + place.across.x * y + place.axis.x * z;
-        float8 dy = place.side.y * x + place.across.y * y + place.axis.y * z;
-        float8 dz = place.side.z * x + place.across.z * y + place.axis.z * z;
-        none |= dx * place.normal.x + dy * place.normal.y + dz * place.normal.z <= 0.0f;
-        dx = select(dx, (float8)(0.0f), none);
-        dy = select(dy, (float8)(0.0f), none);
-        dz = select(dz, (float8)(0.0f), none);
-        vstore8(dx, 0, directions + i);
-        vstore8(dy, 0, directions + RAYS + i);
-        vstore8(dz, 0, directions + 2 * RAYS + i);
-        vstore8((float8)(NOTHING), 0, depths + i);
-        vstore8((uint8)(EMPTY), 0, slots + i);
-    }
-    for (int i = PIXELS; i < RAYS; ++i)
-        directions[i] = directions[RAYS + i] = directions[2 * RAYS + i] = depths[i] = 0.0f;
-}
+// Points that are drawn at once.
+typedef struct {
+    uint first;        // number of the first lane's point
+    int lanes;         // that have a point of their own
+    uint cast[LANES];  // rays of the buffer
+    GatherPoint points[LANES];
+    Place places[LANES];
+    Pixel pixels[PIXELS];
+} Pictures;
 
-// Draws what is above a place.
-void draw_place(global const WideNode* nodes, Place place, uint seed, float* directions, float* depths, uint* slots) {
-    clear(place, directions, depths, slots);
-    draw(nodes, directions, place.start, place.side, place.across, place.axis, place.normal, place.scale, seed, depths,
-         slots);
+// Draws what is above the points of a group. `first`: the number of the first point of each group, and the end.
+void draw_pictures(global const WideNode* nodes, global const GatherPoint* points, global const float* rays, uint sets,
+                   global const uint* first, uint group, Pictures* pictures) {
+    Starts s;
+    pictures->first = first[group];
+    pictures->lanes = first[group + 1] - first[group];
+    for (int lane = 0; lane < LANES; ++lane) {
+        pictures->points[lane] = points[pictures->first + (lane < pictures->lanes ? lane : 0)];
+        pictures->places[lane] = place_of(nodes, pictures->points[lane], rays, sets);
+        pictures->cast[lane] = 0;
+        const Place* place = &pictures->places[lane];
+        LANE(float, s.x, lane) = place->start.x;
+        LANE(float, s.y, lane) = place->start.y;
+        LANE(float, s.z, lane) = place->start.z;
+        LANE(float, s.normal_x, lane) = place->normal.x;
+        LANE(float, s.normal_y, lane) = place->normal.y;
+        LANE(float, s.normal_z, lane) = place->normal.z;
+        LANE(float, s.axis_x, lane) = place->axis.x;
+        LANE(float, s.axis_y, lane) = place->axis.y;
+        LANE(float, s.axis_z, lane) = place->axis.z;
+        LANE(float, s.side_x, lane) = place->side.x;
+        LANE(float, s.side_y, lane) = place->side.y;
+        LANE(float, s.side_z, lane) = place->side.z;
+        LANE(float, s.across_x, lane) = place->across.x;
+        LANE(float, s.across_y, lane) = place->across.y;
+        LANE(float, s.across_z, lane) = place->across.z;
+        LANE(float, s.scale, lane) = place->scale;
+        LANE(float, s.pixels, lane) = 0.5f * GRID / place->scale;
+        LANE(uint, s.seed, lane) = pictures->points[lane].seed;
+    }
+    for (int i = 0; i < PIXELS; ++i) {
+        Floats x, y;
+        for (int lane = 0; lane < LANES; ++lane) {
+            LANE(float, x, lane) = pictures->places[lane].set[i];
+            LANE(float, y, lane) = pictures->places[lane].set[PIXELS + i];
+            pictures->cast[lane] += LANE(float, x, lane) <= 1.0f;
+        }
+        Flags shown = x <= 1.0f;
+        x *= s.scale;
+        y *= s.scale;
+        Floats z = sqrt(fmax(1.0f - x * x - y * y, (Floats)(0.0f)));
+        Floats dx = s.side_x * x + s.across_x * y + s.axis_x * z;
+        Floats dy = s.side_y * x + s.across_y * y + s.axis_y * z;
+        Floats dz = s.side_z * x + s.across_z * y + s.axis_z * z;
+        shown &= dx * s.normal_x + dy * s.normal_y + dz * s.normal_z > 0.0f;
+        Pixel* pixel = pictures->pixels + i;
+        pixel->x = select((Floats)(0.0f), dx, shown);
+        pixel->y = select((Floats)(0.0f), dy, shown);
+        pixel->z = select((Floats)(0.0f), dz, shown);
+        pixel->depth = (Floats)(NOTHING);
+        pixel->side = (Numbers)(EMPTY);
+    }
+    draw(nodes, &s, pictures->pixels);
 }
 
 // Returns the side that a pixel sees, twice the slot and one more for the back, or kSeesSky, if a slot was drawn there.
@@ -122,27 +165,36 @@ void draw_place(global const WideNode* nodes, Place place, uint seed, float* dir
 // back seems to be seen, the ray is traced surfel by surfel, for points of the picture; for those between which light is
 // exchanged it would take three times as long. Where the light of both sides is known, only backs that are much brighter
 // are traced: in scans whose normals are often reversed, most rays see backs.
-uint seen_side(global const WideNode* nodes, Place place, const uint* slots, const float* depths, int pixel,
-               float3 ray, float3 direction, float lift, global const float* light) {
-    float3 away = place.start - place.position;
-    float3 lifted = (float3)(dot(away, place.side), dot(away, place.across), dot(away, place.axis));
-    uint slot = seen_slot(nodes, slots, slots[pixel], depths[pixel], ray, direction, lifted, place.position, lift,
-                          place.scale);
-    bool back = shows_back(nodes, slot, place.start);
-    if (back && place.shown && nodes[slot / 8].child[slot % 8] >= 0 && back_is_bright(light, slot)) {
-        float about = 2.0f * nodes[slot / 8].bound[slot % 8], most = NOTHING;
-        slot = first_surfel(nodes, place.start, direction, fmax(depths[pixel] - about, 0.0f), &most);
-        if (slot == EMPTY) return kSeesSky;
-        back = shows_back(nodes, slot, place.start);
+uint seen_side(global const WideNode* nodes, const Pictures* pictures, int lane, int pixel, float3 direction,
+               global const float* light) {
+    const Place* place = &pictures->places[lane];
+    const Pixel* at = pictures->pixels + pixel;
+    uint side = LANE(uint, at->side, lane);
+    if (side == EMPTY) return kSeesSky;
+    float depth = LANE(float, at->depth, lane), lift = pictures->points[lane].lift;
+    if (depth < lift * (NEAR * GRID) / place->scale) {
+        float3 away = place->start - place->position;
+        float3 lifted = (float3)(dot(away, place->side), dot(away, place->across), dot(away, place->axis));
+        float3 ray = (float3)(dot(direction, place->side), dot(direction, place->across), dot(direction, place->axis));
+        uint slot = seen_slot(nodes, pictures->pixels, lane, side / 2, depth, ray, direction, lifted, place->position,
+                              lift, place->scale);
+        if (slot != side / 2) side = 2 * slot + (shows_back(nodes, slot, place->start) ? 1u : 0u);
     }
-    return 2 * slot + (back ? 1u : 0u);
+    uint slot = side / 2;
+    if ((side & 1) && place->shown && nodes[slot / 8].child[slot % 8] >= 0 && back_is_bright(light, slot)) {
+        float about = 2.0f * nodes[slot / 8].bound[slot % 8], most = NOTHING;
+        slot = first_surfel(nodes, place->start, direction, fmax(depth - about, 0.0f), &most);
+        if (slot == EMPTY) return kSeesSky;
+        side = 2 * slot + (shows_back(nodes, slot, place->start) ? 1u : 0u);
+    }
+    return side;
 }
 
 // Returns 1 less the mean cosine between a ray of a buffer and the directions of the cone about it that has the solid
 // angle of kRaysALobe rays, which is the cone's share of the sphere.
-float spread_of(Place place, float3 ray) {
+float spread_of(Place place, float cosine) {
     float rays = 0.78539816f * GRID * GRID;  // in the disc that the grid covers
-    return kRaysALobe * place.scale * place.scale / (4.0f * rays * fmax(ray.z, 0.1f));
+    return kRaysALobe * place.scale * place.scale / (4.0f * rays * fmax(cosine, 0.1f));
 }
 
 // Returns the specular light of a side in a direction, W/(sr m^2). The lobe is wider by `spread` (spread_of): rays meet
@@ -190,81 +242,69 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
                    global const float* lobe_directions, uint glossy, global const float* bright, float reach2,
                    global const float* sky_texels, SkyPicture sky, global const float4* openings, uint open,
                    global const float* densities, global const GatherPoint* points, global const float* rays,
-                   uint sets, uint count, global float4* results) {
-    uint number = get_global_id(0);
-    if (number >= count) return;
-    GatherPoint point = points[number];
-    Place place = place_of(nodes, point, rays, sets);
-    float directions[3 * RAYS];
-    float depths[RAYS];
-    uint slots[PIXELS];
-    draw_place(nodes, place, point.seed, directions, depths, slots);
-
-    float3 sum = (float3)(0.0f);
-    uint cast = 0, empty = 0;
-    for (int j = 0; j < GRID; ++j)
-        for (int i = 0; i < GRID; ++i) {
-            int pixel = j * ROW + i;
-            if (place.set[pixel] > 1.0f) continue;
-            ++cast;
-            float3 direction = direction_of(directions, pixel);
-            float height = dot(direction, place.normal);
+                   uint sets, global const uint* first, uint groups, global float4* results) {
+    if (get_global_id(0) >= groups) return;
+    Pictures pictures;
+    draw_pictures(nodes, points, rays, sets, first, get_global_id(0), &pictures);
+    for (int lane = 0; lane < pictures.lanes; ++lane) {
+        uint number = pictures.first + lane;
+        const Place* place = &pictures.places[lane];
+        float exponent = pictures.points[lane].exponent;
+        float3 sum = (float3)(0.0f);
+        uint empty = 0;
+        for (int pixel = 0; pixel < PIXELS; ++pixel) {
+            float3 direction = direction_of(pictures.pixels + pixel, lane);
+            float height = dot(direction, place->normal);
             if (!(height > 0.0f)) continue;
-            float3 ray = ray_of(place, pixel);
-            float weight = point.exponent > 0.0f ? pow(ray.z, point.exponent - 1.0f) * height : 1.0f;
-            uint side = kSeesSky;
-            if (slots[pixel] != EMPTY)
-                side = seen_side(nodes, place, slots, depths, pixel, ray, direction, point.lift, lit ? light : 0);
+            float weight = 1.0f;
+            if (exponent > 0.0f) weight = pow(dot(direction, place->axis), exponent - 1.0f) * height;
+            uint side = seen_side(nodes, &pictures, lane, pixel, direction, lit ? light : 0);
             if (side == kSeesSky) {
                 ++empty;
                 if (sky.width == 0) continue;
                 if (open > 0)
-                    weight *= share_of_buffer(openings, open, densities + number * open, place.position, direction,
+                    weight *= share_of_buffer(openings, open, densities + number * open, place->position, direction,
                                               height);
                 sum += weight * sky_radiance(sky_texels, sky, direction);
             } else if (lit) {
                 float3 radiance = vload3(side, light);
-                if (reach2 >= 0.0f) radiance = without_bright(radiance, bright, reach2, side, depths[pixel]);
+                if (reach2 >= 0.0f)
+                    radiance = without_bright(radiance, bright, reach2, side,
+                                              LANE(float, pictures.pixels[pixel].depth, lane));
                 sum += weight * radiance;
-                if (glossy) sum += weight * specular(lobe_light, lobe_directions, side, -direction, spread_of(place, ray));
+                if (glossy)
+                    sum += weight * specular(lobe_light, lobe_directions, side, -direction,
+                                             spread_of(*place, dot(direction, place->axis)));
             }
         }
-    results[number] = (float4)(sum / cast, (float)(empty) / cast);
+        uint cast = pictures.cast[lane];
+        results[number] = (float4)(sum / cast, (float)(empty) / cast);
+    }
 }
 
-// Sets what each pixel of the buffers of `count` points from `first` on sees: a side (seen_side), kSeesSky or
-// kSeesNothing, GRID * GRID for each point; and the mean of 1 over the distance, 1/m, which is taken as at least the lift.
+// Sets what each pixel of the buffers of points sees: a side (seen_side), kSeesSky or kSeesNothing, GRID * GRID for each
+// point; and the mean of 1 over the distance, 1/m, which is taken as at least the lift.
 kernel void see(global const WideNode* nodes, global const GatherPoint* points, global const float* rays, uint sets,
-                uint first, uint count, global uint* seen, global float* nearness) {
-    uint number = get_global_id(0);
-    if (number >= count) return;
-    number += first;
-    GatherPoint point = points[number];
-    Place place = place_of(nodes, point, rays, sets);
-    float directions[3 * RAYS];
-    float depths[RAYS];
-    uint slots[PIXELS];
-    draw_place(nodes, place, point.seed, directions, depths, slots);
-
-    global uint* sees = seen + number * (uint)(GRID * GRID);
-    float near = 0.0f;
-    uint cast = 0;
-    for (int j = 0; j < GRID; ++j)
-        for (int i = 0; i < GRID; ++i) {
-            int pixel = j * ROW + i;
-            float3 direction = direction_of(directions, pixel);
+                global const uint* first, uint begin, uint groups, global uint* seen, global float* nearness) {
+    if (get_global_id(0) >= groups) return;
+    Pictures pictures;
+    draw_pictures(nodes, points, rays, sets, first, begin + get_global_id(0), &pictures);
+    for (int lane = 0; lane < pictures.lanes; ++lane) {
+        uint number = pictures.first + lane;
+        global uint* sees = seen + number * (uint)(PIXELS);
+        float lift = pictures.points[lane].lift, near = 0.0f;
+        for (int pixel = 0; pixel < PIXELS; ++pixel) {
+            float3 direction = direction_of(pictures.pixels + pixel, lane);
             uint code = kSeesNothing;
-            if (place.set[pixel] <= 1.0f && dot(direction, place.normal) > 0.0f) {
-                ++cast;
-                code = kSeesSky;
-                if (slots[pixel] != EMPTY) {
-                    code = seen_side(nodes, place, slots, depths, pixel, ray_of(place, pixel), direction, point.lift, 0);
-                    if (code != kSeesSky) near += 1.0f / fmax(depths[pixel], fmax(point.lift, 1e-6f));
-                }
+            if (dot(direction, pictures.places[lane].normal) > 0.0f) {
+                code = seen_side(nodes, &pictures, lane, pixel, direction, 0);
+                if (code != kSeesSky)
+                    near += 1.0f / fmax(LANE(float, pictures.pixels[pixel].depth, lane), fmax(lift, 1e-6f));
             }
-            sees[j * GRID + i] = code;
+            sees[pixel] = code;
         }
-    nearness[number] = cast > 0 ? near / cast : 0.0f;
+        nearness[number] = pictures.cast[lane] > 0 ? near / pictures.cast[lane] : 0.0f;
+    }
 }
 
 // For each point: the light that it receives by what its buffer sees, as the ten terms of a LightByNormal (three floats
@@ -287,40 +327,39 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
     float3 sum = (float3)(0.0f), terms[9];
     for (int k = 0; k < 9; ++k) terms[k] = (float3)(0.0f);
     uint cast = 0;
-    for (int j = 0; j < GRID; ++j)
-        for (int i = 0; i < GRID; ++i) {
-            uint code = seen[number * (uint)(GRID * GRID) + (uint)(j * GRID + i)];
-            if (code == kSeesNothing) continue;
-            ++cast;
-            float3 ray = ray_of(place, j * ROW + i);
-            float3 d = place.side * ray.x + place.across * ray.y + place.axis * ray.z;
-            float3 radiance = (float3)(0.0f);
-            if (code != kSeesSky) {
-                if (lit) radiance = vload3(code, light);
-                if (lit && reach2 >= 0.0f)
-                    radiance = without_bright(radiance, bright, reach2, code,
-                                              length(slot_middle(nodes, code / 2) - place.position));
-                if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d, spread_of(place, ray));
-            } else if (sky.width > 0) {
-                radiance = sky_radiance(sky_texels, sky, d);
-                if (open > 0)
-                    radiance *= share_of_buffer(openings, open, densities, place.position, d, dot(d, place.normal));
-            }
-            sum += radiance;
-            // Rays are drawn by the cosine, so each stands for as much solid angle as 1 over its cosine; within the
-            // last six degrees above the horizon that would be beyond bounds, and stays as it is there.
-            float3 weighted = radiance / fmax(ray.z, 0.1f);
-            float3 linear = 0.5f * weighted, squares = 0.46875f * weighted;
-            terms[0] += linear * d.x;
-            terms[1] += linear * d.y;
-            terms[2] += linear * d.z;
-            terms[3] += squares * (d.x * d.x);
-            terms[4] += squares * (d.y * d.y);
-            terms[5] += squares * (d.z * d.z);
-            terms[6] += squares * (2.0f * d.x * d.y);
-            terms[7] += squares * (2.0f * d.y * d.z);
-            terms[8] += squares * (2.0f * d.z * d.x);
+    for (int pixel = 0; pixel < PIXELS; ++pixel) {
+        uint code = seen[number * (uint)(PIXELS) + (uint)(pixel)];
+        if (code == kSeesNothing) continue;
+        ++cast;
+        float3 ray = ray_of(place, pixel);
+        float3 d = place.side * ray.x + place.across * ray.y + place.axis * ray.z;
+        float3 radiance = (float3)(0.0f);
+        if (code != kSeesSky) {
+            if (lit) radiance = vload3(code, light);
+            if (lit && reach2 >= 0.0f)
+                radiance = without_bright(radiance, bright, reach2, code,
+                                          length(slot_middle(nodes, code / 2) - place.position));
+            if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d, spread_of(place, ray.z));
+        } else if (sky.width > 0) {
+            radiance = sky_radiance(sky_texels, sky, d);
+            if (open > 0)
+                radiance *= share_of_buffer(openings, open, densities, place.position, d, dot(d, place.normal));
         }
+        sum += radiance;
+        // Rays are drawn by the cosine, so each stands for as much solid angle as 1 over its cosine; within the
+        // last six degrees above the horizon that would be beyond bounds, and stays as it is there.
+        float3 weighted = radiance / fmax(ray.z, 0.1f);
+        float3 linear = 0.5f * weighted, squares = 0.46875f * weighted;
+        terms[0] += linear * d.x;
+        terms[1] += linear * d.y;
+        terms[2] += linear * d.z;
+        terms[3] += squares * (d.x * d.x);
+        terms[4] += squares * (d.y * d.y);
+        terms[5] += squares * (d.z * d.z);
+        terms[6] += squares * (2.0f * d.x * d.y);
+        terms[7] += squares * (2.0f * d.y * d.z);
+        terms[8] += squares * (2.0f * d.z * d.x);
+    }
     float share = cast > 0 ? 1.0f / cast : 0.0f;
     float3 n = place.axis;
     float powers[9] = {n.x, n.y, n.z, n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.y * n.z, n.z * n.x};

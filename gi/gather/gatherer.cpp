@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
+#include "gi/gather/point_groups.h"
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
@@ -16,41 +18,87 @@ constexpr const char* kSource = "gi/gather/gather.cl";
 constexpr uint32_t kSets = 32;  // of rays; points choose among them
 constexpr float kNoRay = 2;     // as x
 constexpr size_t kPointsATask = 64;
+/// How far away most of what points see is, over the size of the largest surface.
+constexpr float kUsualReach = 0.25f;
 constexpr double kRim = 1 - 1e-6;  // rays in the plane of the surface would meet it
-/// Points of one run of the kernel, short enough for displays' watchdogs and to be stopped in between, and
-/// work-items of a group.
+/// Points of one run of the kernel, short enough for displays' watchdogs and to be stopped in between; those
+/// that a work-item draws at once; work-items of a group. A GPU has a vector of work-items, so each draws for
+/// one point.
 struct Launch {
-    size_t points, group;
+    size_t points, lanes, group;
 };
-constexpr Launch kOnProcessor{4096, 1}, kOnGpu{65536, 32};
+constexpr Launch kOnProcessor{4096, kGroupedPoints, 1}, kOnGpu{65536, 1, 32};
+
+const Launch& launch_of(const ClDevice& device) {
+    return device.info().is_gpu ? kOnGpu : kOnProcessor;
+}
 
 /// A disc in a square holds pi / 4 of its pixels.
 uint32_t grid_for(uint32_t side) {
     return static_cast<uint32_t>(std::lround(side * std::sqrt(4 / M_PI)));
 }
 
-/// Rows have seven floats of room behind their last pixel and are multiples of eight.
-uint32_t row_for(uint32_t grid) {
-    return (grid + 14) / 8 * 8;
+Defines defines_for(uint32_t grid, const Launch& launch, Fill fill = Fill::rays) {
+    return {{"LUCARNE_GRID", fmt::format("{}", grid)},
+            {"LUCARNE_LANES", fmt::format("{}", launch.lanes)},
+            {"LUCARNE_FILL_PIXELS", fill == Fill::pixels ? "1" : "0"}};
 }
 
-Defines defines_for(uint32_t grid, Fill fill = Fill::rays) {
-    return {{"LUCARNE_GRID", fmt::format("{}", grid)},
-            {"LUCARNE_ROW", fmt::format("{}", row_for(grid))},
-            {"LUCARNE_FILL_PIXELS", fill == Fill::pixels ? "1" : "0"}};
+/// Returns what a device draws at once: on a GPU single points.
+PointGroups groups_for(const Launch& launch, std::span<const GatherPoint> points, float reach) {
+    if (launch.lanes > 1) return group_points(points, reach);
+    PointGroups groups;
+    groups.order.resize(points.size());
+    std::iota(groups.order.begin(), groups.order.end(), 0u);
+    groups.first.resize(points.size() + 1);
+    std::iota(groups.first.begin(), groups.first.end(), 0u);
+    return groups;
+}
+
+std::vector<GatherPoint> in_order(std::span<const GatherPoint> points, std::span<const uint32_t> order) {
+    std::vector<GatherPoint> result;
+    result.reserve(order.size());
+    for (const uint32_t number : order) result.push_back(points[number]);
+    return result;
+}
+
+/// Gives the points of each group the same seed / kSets, by which their pictures are turned, so that each of
+/// them sees a node at about the same pixels. `first`: where groups begin, and the end.
+void turn_alike(std::span<GatherPoint> points, std::span<const uint32_t> first) {
+    for (size_t group = 0; group + 1 < first.size(); ++group) {
+        const uint32_t turn = points[first[group]].seed / kSets * kSets;
+        for (uint32_t i = first[group]; i < first[group + 1]; ++i)
+            points[i].seed = turn + points[i].seed % kSets;
+    }
+}
+
+/// Calls body(begin, end) for the groups of each launch until one fails.
+template <class Body>
+Result<void> for_each_launch(const Launch& launch, const PointGroups& groups, const Body& body) {
+    for (size_t begin = 0; begin + 1 < groups.first.size();) {
+        size_t end = begin + 1;
+        while (end + 1 < groups.first.size() && groups.first[end + 1] - groups.first[begin] <= launch.points)
+            ++end;
+        LUCARNE_TRY(body(begin, end));
+        begin = end;
+    }
+    return {};
 }
 
 }  // namespace
 
 Result<std::vector<uint32_t>> MicroBuffers::seen() const {
-    std::vector<uint32_t> result(count_ * grid_ * grid_);
-    if (count_ > 0) LUCARNE_TRY(seen_.download(0, std::as_writable_bytes(std::span(result))));
+    const size_t pixels = size_t{grid_} * grid_;
+    std::vector<uint32_t> drawn(count_ * pixels), result(drawn.size());
+    if (count_ > 0) LUCARNE_TRY(seen_.download(0, std::as_writable_bytes(std::span(drawn))));
+    for (size_t i = 0; i < count_; ++i) std::copy_n(&drawn[i * pixels], pixels, &result[order_[i] * pixels]);
     return result;
 }
 
 Result<std::vector<float>> MicroBuffers::nearness() const {
-    std::vector<float> result(count_);
-    if (count_ > 0) LUCARNE_TRY(nearness_.download(0, std::as_writable_bytes(std::span(result))));
+    std::vector<float> drawn(count_), result(count_);
+    if (count_ > 0) LUCARNE_TRY(nearness_.download(0, std::as_writable_bytes(std::span(drawn))));
+    for (size_t i = 0; i < count_; ++i) result[order_[i]] = drawn[i];
     return result;
 }
 
@@ -59,6 +107,10 @@ Result<void> Gatherer::set_tree(ClDevice& device, const std::shared_ptr<const Su
     set_no_bright();
     openings_ = nullptr;
     empty_ = !tree || tree->empty();
+    reach_ = 0;
+    for (size_t k = 0; !empty_ && k < 8; ++k)
+        if (tree->nodes[0].child[k] != kNoChild)
+            reach_ = std::max(reach_, kUsualReach * tree->nodes[0].bound[k]);
     if (!empty_) return device.lend(nodes_, std::as_bytes(std::span(tree->nodes)), tree, "tree of surfels");
     const auto nothing = std::make_shared<const WideNode>(empty_node());
     return device.lend(nodes_, std::as_bytes(std::span(nothing.get(), 1)), nothing, "tree of surfels");
@@ -142,7 +194,7 @@ Result<void> Gatherer::set_sky(ClDevice& device, const GatherSky& sky) {
 /// Makes kSets sets of rays: one in every pixel of the unit disc, at a random place of the pixel.
 Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed) {
     if (rays_ && grid_ == grid && seed_ == seed) return {};
-    const size_t row = row_for(grid), pixels = grid * row;
+    const size_t pixels = size_t{grid} * grid;
     std::vector<float> rays(kSets * 2 * pixels, kNoRay);
     Random random(seed, grid);
     for (size_t set = 0; set < kSets; ++set)
@@ -151,7 +203,7 @@ Result<void> Gatherer::make_rays(ClDevice& device, uint32_t grid, uint64_t seed)
                 const double x = 2 * (static_cast<double>(i) + random.uniform()) / grid - 1;
                 const double y = 2 * (static_cast<double>(j) + random.uniform()) / grid - 1;
                 if (x * x + y * y >= kRim) continue;
-                float* ray = &rays[set * 2 * pixels + j * row + i];
+                float* ray = &rays[set * 2 * pixels + j * grid + i];
                 ray[0] = static_cast<float>(x);
                 ray[pixels] = static_cast<float>(y);
             }
@@ -169,31 +221,48 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
     const auto [lit, glossy, sky, open] = asked(what);
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid, fill)));
-    const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
-    const size_t most = std::min(points.size(), launch.points);
-    LUCARNE_TRY(device.reserve(points_, most * sizeof(GatherPoint), "gather points"));
-    LUCARNE_TRY(device.reserve(results_, most * sizeof(glm::vec4), "gathered light"));
-    for (size_t first = 0; first < points.size(); first += launch.points) {
+    const Launch& launch = launch_of(device);
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid, launch, fill)));
+    const PointGroups groups = groups_for(launch, points, reach_);
+    std::vector<glm::vec4> found;
+    std::vector<uint32_t> firsts;
+    size_t finished = 0;
+    return for_each_launch(launch, groups, [&](size_t begin, size_t end) -> Result<void> {
         if (stop && *stop) return {};
-        const size_t count = std::min(launch.points, points.size() - first);
-        const auto some = points.subspan(first, count);
+        firsts.assign(&groups.first[begin], &groups.first[end] + 1);
+        const auto numbers = std::span(groups.order).subspan(firsts[0], firsts.back() - firsts[0]);
+        for (const uint32_t base = firsts[0]; uint32_t & first : firsts) first -= base;
+        const std::vector<GatherPoint> some = in_order(points, numbers);
         if (open > 0) LUCARNE_TRY(send_densities(device, some, grid));
-        LUCARNE_TRY(points_.upload(0, std::as_bytes(some)));
+        LUCARNE_TRY(send_points(device, some, firsts, points_));
+        LUCARNE_TRY(device.reserve(results_, some.size() * sizeof(glm::vec4), "gathered light"));
+        const size_t count = end - begin;
         LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit,
                                 glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,
                                 reach2_ >= 0 ? bright_ : nodes_, reach2_,
                                 sky.width > 0 ? sky_texels_ : nodes_, sky, open > 0 ? spheres_ : nodes_, open,
-                                open > 0 ? densities_of_ : nodes_, points_, rays_, kSets,
+                                open > 0 ? densities_of_ : nodes_, points_, rays_, kSets, groups_,
                                 static_cast<uint32_t>(count), results_));
-        LUCARNE_TRY(results_.download(0, std::as_writable_bytes(results.subspan(first, count))));
+        found.resize(some.size());
+        LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(found))));
+        for (size_t i = 0; i < found.size(); ++i) results[numbers[i]] = found[i];
         if (open > 0)
             each_sky_ray(some, [&](size_t i, const glm::vec3&, const glm::vec3& light) {
-                results[first + i] += glm::vec4(light, 0);
+                results[numbers[i]] += glm::vec4(light, 0);
             });
-        if (done) done(first + count);
-    }
-    return {};
+        finished += found.size();
+        if (done) done(finished);
+        return {};
+    });
+}
+
+Result<void> Gatherer::send_points(ClDevice& device, std::vector<GatherPoint> points,
+                                   std::span<const uint32_t> first, ClBuffer& to) {
+    turn_alike(points, first);
+    LUCARNE_TRY(device.reserve(to, points.size() * sizeof(GatherPoint), "gather points"));
+    LUCARNE_TRY(device.reserve(groups_, first.size_bytes(), "groups of gather points"));
+    LUCARNE_TRY(to.upload(0, std::as_bytes(std::span(points))));
+    return groups_.upload(0, std::as_bytes(first));
 }
 
 Gatherer::Asked Gatherer::asked(Gathered what) const {
@@ -214,21 +283,24 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
     buffers.held_.assign(points.begin(), points.end());
     if (points.empty()) return {};
     LUCARNE_TRY(make_rays(device, grid, seed));
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "see", defines_for(grid)));
+    const Launch& launch = launch_of(device);
+    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "see", defines_for(grid, launch)));
+    const PointGroups groups = groups_for(launch, points, reach_);
+    buffers.order_ = groups.order;
     const size_t count = points.size(), pixels = size_t{grid} * grid;
-    LUCARNE_TRY(device.reserve(buffers.points_, count * sizeof(GatherPoint), "gather points"));
     LUCARNE_TRY(device.reserve(buffers.seen_, count * pixels * sizeof(uint32_t), "micro-buffers"));
     LUCARNE_TRY(device.reserve(buffers.nearness_, count * sizeof(float), "distances"));
-    LUCARNE_TRY(buffers.points_.upload(0, bytes));
-    const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
-    for (size_t first = 0; first < count; first += launch.points) {
+    LUCARNE_TRY(send_points(device, in_order(points, groups.order), groups.first, buffers.points_));
+    const auto see_groups = [&](size_t begin, size_t end) -> Result<void> {
         if (stop && *stop) return {};
-        const size_t some = std::min(launch.points, count - first);
-        LUCARNE_TRY(kernel->run(ClRange(some, launch.group), nodes_, buffers.points_, rays_, kSets,
-                                static_cast<uint32_t>(first), static_cast<uint32_t>(some), buffers.seen_,
-                                buffers.nearness_));
+        LUCARNE_TRY(kernel->run(ClRange(end - begin, launch.group), nodes_, buffers.points_, rays_, kSets,
+                                groups_, static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin),
+                                buffers.seen_, buffers.nearness_));
         if (stop) LUCARNE_TRY(device.finish());
-    }
+        return {};
+    };
+    LUCARNE_TRY(for_each_launch(launch, groups, see_groups));
+    if (stop && *stop) return {};
     buffers.count_ = count;
     buffers.grid_ = grid;
     buffers.seed_ = seed;
@@ -243,15 +315,18 @@ Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered wh
     if (result.empty()) return result;
     const auto [lit, glossy, sky, open] = asked(what);
     LUCARNE_TRY(make_rays(device, buffers.grid_, buffers.seed_));
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "shade", defines_for(buffers.grid_)));
+    const Launch& launch = launch_of(device);
+    LUCARNE_ASSIGN(const ClKernel* kernel,
+                   device.kernel(kSource, "shade", defines_for(buffers.grid_, launch)));
     LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightByNormal), "gathered light"));
-    const Launch launch = device.info().is_gpu ? kOnGpu : kOnProcessor;
-    const std::span<const GatherPoint> points = buffers.held_;
+    const std::vector<GatherPoint> points = in_order(buffers.held_, buffers.order_);
+    std::vector<LightByNormal> drawn(result.size());
     std::vector<LightByNormal> by_rays(open > 0 ? points.size() : 0);
     for (size_t first = 0; first < result.size(); first += launch.points) {
         if (stop && *stop) return std::vector<LightByNormal>(result.size());
         const size_t count = std::min(launch.points, result.size() - first);
-        if (open > 0) LUCARNE_TRY(send_densities(device, points.subspan(first, count), buffers.grid_));
+        if (open > 0)
+            LUCARNE_TRY(send_densities(device, std::span(points).subspan(first, count), buffers.grid_));
         LUCARNE_TRY(kernel->run(
             ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit, glossy ? lobe_light_ : nodes_,
             glossy ? lobe_directions_ : nodes_, glossy, reach2_ >= 0 ? bright_ : nodes_, reach2_,
@@ -259,14 +334,15 @@ Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered wh
             open > 0 ? densities_of_ : nodes_, buffers.points_, rays_, kSets, static_cast<uint32_t>(first),
             static_cast<uint32_t>(count), buffers.seen_, results_));
         if (open == 0) continue;
-        each_sky_ray(points.subspan(first, count),
+        each_sky_ray(std::span(points).subspan(first, count),
                      [&](size_t i, const glm::vec3& direction, const glm::vec3& light) {
                          by_rays[first + i].add(light_from(direction, points[first + i].normal, light), 1);
                      });
         LUCARNE_TRY(device.finish());
     }
-    LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(result))));
-    for (size_t i = 0; i < by_rays.size(); ++i) result[i].add(by_rays[i], 1);
+    LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(drawn))));
+    for (size_t i = 0; i < by_rays.size(); ++i) drawn[i].add(by_rays[i], 1);
+    for (size_t i = 0; i < drawn.size(); ++i) result[buffers.order_[i]] = drawn[i];
     return result;
 }
 

@@ -42,6 +42,7 @@ class MicroBuffers {
     friend class Gatherer;
     ClBuffer points_, seen_, nearness_;
     std::vector<GatherPoint> held_;  ///< whose buffers these are
+    std::vector<uint32_t> order_;    ///< numbers of the points in the order in which the device has them
     size_t count_ = 0;
     uint32_t grid_ = 0;
     uint64_t seed_ = 0, tree_ = 0;
@@ -72,7 +73,7 @@ class Gatherer {
     void set_no_openings() { openings_ = nullptr; }
     /// Sets for each point the mean radiance that it receives, weighted by the cosine, W/(sr m^2) (times pi:
     /// irradiance), and in w the share of directions in which there is nothing. About side^2 rays are cast
-    /// from each point; `seed` selects them. Neighbours in `points` should be close together. If `stop`
+    /// from each point; `seed` selects them. If `stop`
     /// becomes true the rest is left out. `done` is told how many points are finished each time some are.
     /// `fill`: what the nodes of the tree cover.
     /// Errors: the device failed.
@@ -103,15 +104,19 @@ class Gatherer {
     /// (SkyOpenings::each_ray()).
     void each_sky_ray(std::span<const GatherPoint> points,
                       const std::function<void(size_t, const glm::vec3&, const glm::vec3&)>& visit) const;
+    /// Sends points in the order of their groups, and where these begin.
+    Result<void> send_points(ClDevice& device, std::vector<GatherPoint> points,
+                             std::span<const uint32_t> first, ClBuffer& to);
     Result<void> make_rays(ClDevice& device, uint32_t grid, uint64_t seed);
 
     static constexpr float kNoReach = -1;
 
     ClBuffer nodes_, light_, bright_, lobe_light_, lobe_directions_, sky_texels_, spheres_, densities_of_,
-        points_, results_, rays_;
+        points_, groups_, results_, rays_;
     SkyPicture sky_{};
     bool empty_ = true, glossy_ = false;
     float reach2_ = kNoReach;
+    float reach_ = 0;  ///< how far away what points see usually is, m
     const SkyOpenings* openings_ = nullptr;
     uint32_t rays_to_sky_ = 0;
     float rays_over_buffer_ = 0;    ///< rays_to_sky_ over the rays of a buffer

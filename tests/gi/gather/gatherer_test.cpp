@@ -80,6 +80,20 @@ TEST_F(GathererTest, ClosedRoomIsSeenInEveryDirection) {
     EXPECT_NEAR(empty / 256, 0, 1e-3);
 }
 
+// Points are drawn in groups. Only which nodes are opened may depend on those beside a point.
+TEST_F(GathererTest, PointsSeeInGroupsWhatTheySeeAlone) {
+    auto surfels = flat::of(scenes::closed_box(2, 60, glm::vec3(0.5f)));
+    std::vector<SideLight> light;
+    for (const FlatSurfel& s : surfels) light.push_back({glm::vec3(s.x, s.y, s.z), glm::vec3(0)});
+    auto points = floor_points(2, surfels[0].radius, 99);
+    for (GatherPoint& point : points) point.seed = 0;  // groups share the first one's turn
+    const auto together = gather(surfels, light, points);
+    for (size_t i = 0; i < points.size(); i += 9) {
+        const glm::vec4 alone = gather(surfels, light, std::vector{points[i]})[0];
+        EXPECT_LT(glm::distance(together[i], alone), 0.01f) << i;
+    }
+}
+
 /// The form factor of a disc of this radius that faces a point at this distance, on its axis.
 double form_factor(double radius, double distance) {
     return radius * radius / (radius * radius + distance * distance);
