@@ -427,6 +427,12 @@ void draw(global const WideNode* nodes, const Starts* starts, Pixel* pixels) {
         int8 large = (bound > near * limit) & (child >= 0);
         top = push(above & large, child, stack, top);
         int8 drawn = above & ~large;
+#if LANES == 8  // a processor: loads the next node while children of this one are drawn (nave: a tenth of the time)
+        if (top > 0) {
+            const char* ahead = (const char*)(ulong)(nodes + stack[top - 1]);
+            for (int line = 0; line < 9; ++line) __builtin_prefetch(ahead + 64 * line);
+        }
+#endif
         if (!any_of(drawn)) continue;
         int draws[8];
         vstore8(drawn, 0, draws);
