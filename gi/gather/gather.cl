@@ -18,16 +18,11 @@
 // quarter of a pixel from where the surface would see it.
 #define NEAR 2.0f
 
-// Returns the direction of a pixel, zero where it has no ray.
-float3 direction_of(const Pixel* pixel, int lane) {
-    return (float3)(LANE(float, pixel->x, lane), LANE(float, pixel->y, lane), LANE(float, pixel->z, lane));
-}
-
 // Returns the slot whose light the surface receives from a direction. Rays start above the surface to clear its noise,
 // and so would see everything from too near. Therefore the light is that of the point where the line from the surface
 // itself meets the plane of the disc; the pixel that shows that point knows its slot. `lifted`: from the surface to
 // the start, along the axes of the picture.
-uint seen_slot(global const WideNode* nodes, const Pixel* picture, int lane, uint slot, float depth, float3 ray,
+uint seen_slot(global const WideNode* nodes, const Picture* picture, int lane, uint slot, float depth, float3 ray,
                float3 direction, float3 lifted, float3 position, float lift, float scale) {
     float3 axis = slot_axis(nodes, slot);
     float straight = dot(axis, slot_middle(nodes, slot) - position) / dot(axis, direction);
@@ -37,7 +32,7 @@ uint seen_slot(global const WideNode* nodes, const Pixel* picture, int lane, uin
     float pixels = rsqrt(dot(seen, seen)) * (0.5f * GRID / scale);
     int i = clamp((int)(seen.x * pixels + 0.5f * GRID), 0, GRID - 1);
     int j = clamp((int)(seen.y * pixels + 0.5f * GRID), 0, GRID - 1);
-    uint other = LANE(uint, picture[j * GRID + i].side, lane);
+    uint other = PIXEL(uint, picture, side, j * GRID + i, lane);
     if (other == EMPTY || other / 2 == slot) return slot;
     other /= 2;
     // It has to be the same surface, not what stands beside it.
@@ -100,7 +95,7 @@ typedef struct {
     uint cast[LANES];  // rays of the buffer
     GatherPoint points[LANES];
     Place places[LANES];
-    Pixel pixels[PIXELS];
+    Picture picture;
 } Pictures;
 
 // Draws what is above the points of a group. `first`: the number of the first point of each group, and the end.
@@ -133,29 +128,29 @@ void draw_pictures(global const WideNode* nodes, global const GatherPoint* point
         LANE(float, s.pixels, lane) = 0.5f * GRID / place->scale;
         LANE(uint, s.seed, lane) = pictures->points[lane].seed;
     }
-    for (int i = 0; i < PIXELS; ++i) {
-        Floats x, y;
-        for (int lane = 0; lane < LANES; ++lane) {
-            LANE(float, x, lane) = pictures->places[lane].set[i];
-            LANE(float, y, lane) = pictures->places[lane].set[PIXELS + i];
-            pictures->cast[lane] += LANE(float, x, lane) <= 1.0f;
+    // Eight rays at once: one of each lane, or eight of a row.
+    for (int j = 0; j < ROWS; ++j)
+        for (int i = 0; i < COLUMNS; i += 8 / LANES) {
+            float8 x, y;
+            for (int k = 0; k < 8; ++k) {
+                int column = i + k / LANES, pixel = j * GRID + column;
+                bool inside = column < GRID && j < GRID;
+                LANE(float, x, k) = inside ? pictures->places[k % LANES].set[pixel] : 2.0f;
+                LANE(float, y, k) = inside ? pictures->places[k % LANES].set[PIXELS + pixel] : 2.0f;
+                pictures->cast[k % LANES] += LANE(float, x, k) <= 1.0f;
+            }
+            int8 shown = x <= 1.0f;
+            x *= s.scale;
+            y *= s.scale;
+            float8 z = sqrt(fmax(1.0f - x * x - y * y, (float8)(0.0f)));
+            float8 dx = s.side_x * x + s.across_x * y + s.axis_x * z;
+            float8 dy = s.side_y * x + s.across_y * y + s.axis_y * z;
+            float8 dz = s.side_z * x + s.across_z * y + s.axis_z * z;
+            shown &= dx * s.normal_x + dy * s.normal_y + dz * s.normal_z > 0.0f;
+            set_rays(&pictures->picture, i, j, select((float8)(0.0f), dx, shown), select((float8)(0.0f), dy, shown),
+                     select((float8)(0.0f), dz, shown));
         }
-        Flags shown = x <= 1.0f;
-        x *= s.scale;
-        y *= s.scale;
-        Floats z = sqrt(fmax(1.0f - x * x - y * y, (Floats)(0.0f)));
-        Floats dx = s.side_x * x + s.across_x * y + s.axis_x * z;
-        Floats dy = s.side_y * x + s.across_y * y + s.axis_y * z;
-        Floats dz = s.side_z * x + s.across_z * y + s.axis_z * z;
-        shown &= dx * s.normal_x + dy * s.normal_y + dz * s.normal_z > 0.0f;
-        Pixel* pixel = pictures->pixels + i;
-        pixel->x = select((Floats)(0.0f), dx, shown);
-        pixel->y = select((Floats)(0.0f), dy, shown);
-        pixel->z = select((Floats)(0.0f), dz, shown);
-        pixel->depth = (Floats)(NOTHING);
-        pixel->side = (Numbers)(EMPTY);
-    }
-    draw(nodes, &s, pictures->pixels);
+    draw(nodes, &s, &pictures->picture);
 }
 
 // Returns the side that a pixel sees, twice the slot and one more for the back, or kSeesSky, if a slot was drawn there.
@@ -168,15 +163,14 @@ void draw_pictures(global const WideNode* nodes, global const GatherPoint* point
 uint seen_side(global const WideNode* nodes, const Pictures* pictures, int lane, int pixel, float3 direction,
                global const float* light) {
     const Place* place = &pictures->places[lane];
-    const Pixel* at = pictures->pixels + pixel;
-    uint side = LANE(uint, at->side, lane);
+    uint side = PIXEL(uint, &pictures->picture, side, pixel, lane);
     if (side == EMPTY) return kSeesSky;
-    float depth = LANE(float, at->depth, lane), lift = pictures->points[lane].lift;
+    float depth = PIXEL(float, &pictures->picture, depth, pixel, lane), lift = pictures->points[lane].lift;
     if (depth < lift * (NEAR * GRID) / place->scale) {
         float3 away = place->start - place->position;
         float3 lifted = (float3)(dot(away, place->side), dot(away, place->across), dot(away, place->axis));
         float3 ray = (float3)(dot(direction, place->side), dot(direction, place->across), dot(direction, place->axis));
-        uint slot = seen_slot(nodes, pictures->pixels, lane, side / 2, depth, ray, direction, lifted, place->position,
+        uint slot = seen_slot(nodes, &pictures->picture, lane, side / 2, depth, ray, direction, lifted, place->position,
                               lift, place->scale);
         if (slot != side / 2) side = 2 * slot + (shows_back(nodes, slot, place->start) ? 1u : 0u);
     }
@@ -253,7 +247,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
         float3 sum = (float3)(0.0f);
         uint empty = 0;
         for (int pixel = 0; pixel < PIXELS; ++pixel) {
-            float3 direction = direction_of(pictures.pixels + pixel, lane);
+            float3 direction = direction_of(&pictures.picture, pixel, lane);
             float height = dot(direction, place->normal);
             if (!(height > 0.0f)) continue;
             float weight = 1.0f;
@@ -270,7 +264,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
                 float3 radiance = vload3(side, light);
                 if (reach2 >= 0.0f)
                     radiance = without_bright(radiance, bright, reach2, side,
-                                              LANE(float, pictures.pixels[pixel].depth, lane));
+                                              PIXEL(float, &pictures.picture, depth, pixel, lane));
                 sum += weight * radiance;
                 if (glossy)
                     sum += weight * specular(lobe_light, lobe_directions, side, -direction,
@@ -293,17 +287,19 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
         uint number = pictures.first + lane;
         global uint* sees = seen + number * (uint)(PIXELS);
         float lift = pictures.points[lane].lift, near = 0.0f;
+        uint cast = 0;
         for (int pixel = 0; pixel < PIXELS; ++pixel) {
-            float3 direction = direction_of(pictures.pixels + pixel, lane);
+            float3 direction = direction_of(&pictures.picture, pixel, lane);
             uint code = kSeesNothing;
             if (dot(direction, pictures.places[lane].normal) > 0.0f) {
+                ++cast;
                 code = seen_side(nodes, &pictures, lane, pixel, direction, 0);
                 if (code != kSeesSky)
-                    near += 1.0f / fmax(LANE(float, pictures.pixels[pixel].depth, lane), fmax(lift, 1e-6f));
+                    near += 1.0f / fmax(PIXEL(float, &pictures.picture, depth, pixel, lane), fmax(lift, 1e-6f));
             }
             sees[pixel] = code;
         }
-        nearness[number] = pictures.cast[lane] > 0 ? near / pictures.cast[lane] : 0.0f;
+        nearness[number] = cast > 0 ? near / cast : 0.0f;
     }
 }
 

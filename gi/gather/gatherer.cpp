@@ -28,6 +28,8 @@ struct Launch {
     size_t points, lanes, group;
 };
 constexpr Launch kOnProcessor{4096, kGroupedPoints, 1}, kOnGpu{65536, 1, 32};
+/// What needs no lanes, such as points that are drawn one by one.
+constexpr size_t kOneLane = 1;
 
 const Launch& launch_of(const ClDevice& device) {
     return device.info().is_gpu ? kOnGpu : kOnProcessor;
@@ -38,9 +40,9 @@ uint32_t grid_for(uint32_t side) {
     return static_cast<uint32_t>(std::lround(side * std::sqrt(4 / M_PI)));
 }
 
-Defines defines_for(uint32_t grid, const Launch& launch, Fill fill = Fill::rays) {
+Defines defines_for(uint32_t grid, size_t lanes, Fill fill = Fill::rays) {
     return {{"LUCARNE_GRID", fmt::format("{}", grid)},
-            {"LUCARNE_LANES", fmt::format("{}", launch.lanes)},
+            {"LUCARNE_LANES", fmt::format("{}", lanes)},
             {"LUCARNE_FILL_PIXELS", fill == Fill::pixels ? "1" : "0"}};
 }
 
@@ -72,14 +74,14 @@ void turn_alike(std::span<GatherPoint> points, std::span<const uint32_t> first) 
     }
 }
 
-/// Calls body(begin, end) for the groups of each launch until one fails.
+/// Calls body(begin, end, lanes) for the groups of each launch until one fails.
 template <class Body>
 Result<void> for_each_launch(const Launch& launch, const PointGroups& groups, const Body& body) {
     for (size_t begin = 0; begin + 1 < groups.first.size();) {
         size_t end = begin + 1;
-        while (end + 1 < groups.first.size() && groups.first[end + 1] - groups.first[begin] <= launch.points)
-            ++end;
-        LUCARNE_TRY(body(begin, end));
+        const size_t last = begin < groups.full ? groups.full : groups.first.size() - 1;
+        while (end < last && groups.first[end + 1] - groups.first[begin] <= launch.points) ++end;
+        LUCARNE_TRY(body(begin, end, begin < groups.full ? launch.lanes : kOneLane));
         begin = end;
     }
     return {};
@@ -222,13 +224,14 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
     const Launch& launch = launch_of(device);
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "gather", defines_for(grid, launch, fill)));
     const PointGroups groups = groups_for(launch, points, reach_);
     std::vector<glm::vec4> found;
     std::vector<uint32_t> firsts;
     size_t finished = 0;
-    return for_each_launch(launch, groups, [&](size_t begin, size_t end) -> Result<void> {
+    return for_each_launch(launch, groups, [&](size_t begin, size_t end, size_t lanes) -> Result<void> {
         if (stop && *stop) return {};
+        LUCARNE_ASSIGN(const ClKernel* kernel,
+                       device.kernel(kSource, "gather", defines_for(grid, lanes, fill)));
         firsts.assign(&groups.first[begin], &groups.first[end] + 1);
         const auto numbers = std::span(groups.order).subspan(firsts[0], firsts.back() - firsts[0]);
         for (const uint32_t base = firsts[0]; uint32_t & first : firsts) first -= base;
@@ -284,15 +287,15 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
     if (points.empty()) return {};
     LUCARNE_TRY(make_rays(device, grid, seed));
     const Launch& launch = launch_of(device);
-    LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "see", defines_for(grid, launch)));
     const PointGroups groups = groups_for(launch, points, reach_);
     buffers.order_ = groups.order;
     const size_t count = points.size(), pixels = size_t{grid} * grid;
     LUCARNE_TRY(device.reserve(buffers.seen_, count * pixels * sizeof(uint32_t), "micro-buffers"));
     LUCARNE_TRY(device.reserve(buffers.nearness_, count * sizeof(float), "distances"));
     LUCARNE_TRY(send_points(device, in_order(points, groups.order), groups.first, buffers.points_));
-    const auto see_groups = [&](size_t begin, size_t end) -> Result<void> {
+    const auto see_groups = [&](size_t begin, size_t end, size_t lanes) -> Result<void> {
         if (stop && *stop) return {};
+        LUCARNE_ASSIGN(const ClKernel* kernel, device.kernel(kSource, "see", defines_for(grid, lanes)));
         LUCARNE_TRY(kernel->run(ClRange(end - begin, launch.group), nodes_, buffers.points_, rays_, kSets,
                                 groups_, static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin),
                                 buffers.seen_, buffers.nearness_));
@@ -317,7 +320,7 @@ Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered wh
     LUCARNE_TRY(make_rays(device, buffers.grid_, buffers.seed_));
     const Launch& launch = launch_of(device);
     LUCARNE_ASSIGN(const ClKernel* kernel,
-                   device.kernel(kSource, "shade", defines_for(buffers.grid_, launch)));
+                   device.kernel(kSource, "shade", defines_for(buffers.grid_, kOneLane)));
     LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightByNormal), "gathered light"));
     const std::vector<GatherPoint> points = in_order(buffers.held_, buffers.order_);
     std::vector<LightByNormal> drawn(result.size());

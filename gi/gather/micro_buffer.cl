@@ -1,5 +1,6 @@
-// Draws the tree of surfels into micro-buffers, small pictures of the half spaces above points (gather.cl): those of
-// LUCARNE_LANES points that lie close together at once, each in a lane of the vectors.
+// Draws the tree of surfels into micro-buffers, small pictures of the half spaces above points (gather.cl): those of eight
+// points that lie close together at once, each in a lane of the vectors (draw_eight.cl), or that of one point, eight
+// pixels at a time (draw_one.cl).
 #include "gi/gather/gather_point.h"
 #include "gi/tree/wide_node.h"
 
@@ -24,16 +25,12 @@
 #define LANES LUCARNE_LANES
 #if LANES == 8
 typedef float8 Floats;
-typedef int8 Flags;  // -1 or 0
 typedef uint8 Numbers;
 #define TO_FLOATS convert_float8
-#define TO_NUMBERS convert_uint8
 #else
 typedef float Floats;
-typedef int Flags;  // 1 or 0
 typedef uint Numbers;
 #define TO_FLOATS convert_float
-#define TO_NUMBERS convert_uint
 #endif
 #define LANE(type, vector, lane) (((type*)&(vector))[lane])
 
@@ -47,11 +44,6 @@ bool any_of(int8 met) {
     ulong2 two = pairs.lo | pairs.hi;
     return (two.x | two.y) != 0;
 }
-#if LANES == 8
-#define ANY_LANE any_of
-#else
-#define ANY_LANE(flags) ((flags) != 0)
-#endif
 
 // Numbers from 0 to 1 for whole ones.
 Floats fractions_of(Numbers seeds) {
@@ -65,20 +57,13 @@ Floats fractions_of(Numbers seeds) {
 
 // Roots and 1 over them, at most 0.2 % too small: a guess from the bits, improved once (Lomont 2003, "Fast inverse
 // square root"). Exact ones take several times as long, and what is drawn where only needs bounds.
-#if LANES == 8
-#define BITS_OF as_int8
-#define OF_BITS as_float8
-#else
-#define BITS_OF as_int
-#define OF_BITS as_float
-#endif
-Floats quick_rsqrt(Floats x) {
-    Floats guess = OF_BITS(0x5f375a86 - (BITS_OF(x) >> 1));
+float8 quick_rsqrt(float8 x) {
+    float8 guess = as_float8(0x5f375a86 - (as_int8(x) >> 1));
     return guess * (1.5f - 0.5f * x * guess * guess);
 }
 // Of what is under zero: zero.
-Floats quick_sqrt(Floats x) {
-    Floats least = MOST(x, (Floats)(1e-12f));
+float8 quick_sqrt(float8 x) {
+    float8 least = MOST(x, (float8)(1e-12f));
     return least * quick_rsqrt(least);
 }
 
@@ -163,12 +148,34 @@ float3 start_of(global const WideNode* nodes, GatherPoint point) {
     return start + viewer * distance + axis * (dot(axis, viewer) > 0.0f ? radius : -radius);
 }
 
-// A pixel of the micro-buffers of all lanes.
+// The micro-buffers of all lanes, GRID rows of GRID pixels: direction of a pixel's ray, zero where there is none; depth of
+// the nearest that was drawn, NOTHING if there is none; side, twice the slot that was drawn, and one more for its back,
+// or EMPTY. ROWS and COLUMNS are those that are set.
+#if LANES == 8
 typedef struct {
-    Floats x, y, z;  // direction of the ray; zero where there is none
-    Floats depth;    // of the nearest that was drawn, NOTHING if there is none
-    Numbers side;    // twice the slot that was drawn, and one more for its back; EMPTY
+    float8 x, y, z, depth;
+    uint8 side;
 } Pixel;
+typedef struct {
+    Pixel pixels[PIXELS];
+} Picture;
+#define ROWS GRID
+#define COLUMNS GRID
+#define PIXEL(type, picture, what, pixel, lane) LANE(type, (picture)->pixels[pixel].what, lane)
+#else
+#define ROWS (GRID + 1)                // with a row of room below the last, for what is drawn two rows at a time
+#define COLUMNS ((GRID + 14) / 8 * 8)  // with room for vectors of eight behind the last pixel
+typedef struct {
+    float x[ROWS * COLUMNS], y[ROWS * COLUMNS], z[ROWS * COLUMNS], depth[ROWS * COLUMNS];
+    uint side[ROWS * COLUMNS];
+} Picture;
+#define PIXEL(type, picture, what, pixel, lane) (picture)->what[(pixel) / GRID * COLUMNS + (pixel) % GRID]
+#endif
+
+float3 direction_of(const Picture* picture, int pixel, int lane) {
+    return (float3)(PIXEL(float, picture, x, pixel, lane), PIXEL(float, picture, y, pixel, lane),
+                    PIXEL(float, picture, z, pixel, lane));
+}
 
 // Where the rays of the lanes start, the normals of their surfaces, and the axes of their pictures, which reach to
 // `scale` along `side` and `across`.
@@ -221,181 +228,60 @@ Group group_of(const Starts* s) {
     return group;
 }
 
-// A child of a node as it appears from the lanes' starts.
+// What a child of a node may cover of a picture: its middle, and how far it reaches from there, in pixels.
 typedef struct {
-    Floats x, y, z;  // its middle, from the start of the rays
-    Floats plane;    // its plane: n . p = plane; zero: it is not seen
-    Numbers side;    // which of its sides is seen
-    int4 pixels;     // first and last column, first and last row that any lane may see it at
-} Child;
+    float8 x, y, wide, tall;
+} Outline;
 
-// Returns the least of each of four vectors' lanes.
-float4 least_lanes(Floats a, Floats b, Floats c, Floats d) {
-#if LANES == 8
-    float4 e = LEAST(a.lo, a.hi), f = LEAST(b.lo, b.hi), g = LEAST(c.lo, c.hi), h = LEAST(d.lo, d.hi);
-    float4 ef = LEAST((float4)(e.lo, f.lo), (float4)(e.hi, f.hi));
-    float4 gh = LEAST((float4)(g.lo, h.lo), (float4)(g.hi, h.hi));
-    return LEAST((float4)(ef.even, gh.even), (float4)(ef.odd, gh.odd));
-#else
-    return (float4)(a, b, c, d);
-#endif
-}
-
-// Lets a pixel show a child in those lanes whose ray meets it at the distance t.
-void show(Pixel* pixel, const Child* child, Floats t, Flags met) {
-    met &= (t < pixel->depth) | (child->side < pixel->side);  // the smaller of two at one distance, on every run
-    pixel->depth = select(pixel->depth, t, met);
-    pixel->side = select(pixel->side, child->side, met);
-}
-
-void draw_surfel(global const WideNode* node, int k, const Child* child, Pixel* pixels) {
-    float nx = node->nx[k], ny = node->ny[k], nz = node->nz[k], radius2 = node->bound[k] * node->bound[k];
-    Floats cx = child->x, cy = child->y, cz = child->z, plane = child->plane;
-    int4 part = child->pixels;
-    for (int j = part.s2; j <= part.s3; ++j)
-        for (int i = part.s0; i <= part.s1; ++i) {
-            Pixel* p = pixels + j * GRID + i;
-            Floats t = plane / (p->x * nx + p->y * ny + p->z * nz);
-            Floats x = p->x * t - cx, y = p->y * t - cy, z = p->z * t - cz;
-            Flags met = (t > 0.0f) & (t <= p->depth) & (x * x + y * y + z * z <= radius2);
-            if (ANY_LANE(met)) show(p, child, t, met);
-        }
-}
-
-// A node of several directions: a disc that faces each start, drawn by chance.
-void draw_cloud(global const WideNode* node, int k, const Child* child, Numbers seeds, Pixel* pixels) {
-    float radius2 = node->bound[k] * node->bound[k], fill = node->low_x[k];
-    Floats nearer = rsqrt(child->x * child->x + child->y * child->y + child->z * child->z);
-    Floats nx = child->x * nearer, ny = child->y * nearer, nz = child->z * nearer;
-    Floats cx = child->x, cy = child->y, cz = child->z, plane = child->plane;
-    int4 part = child->pixels;
-    for (int j = part.s2; j <= part.s3; ++j)
-        for (int i = part.s0; i <= part.s1; ++i) {
-            Pixel* p = pixels + j * GRID + i;
-            Floats t = plane / (p->x * nx + p->y * ny + p->z * nz);
-            Floats x = p->x * t - cx, y = p->y * t - cy, z = p->z * t - cz;
-            Flags met = (t > 0.0f) & (t <= p->depth) & (x * x + y * y + z * z <= radius2);
-            if (!ANY_LANE(met)) continue;
-            met &= fractions_of((child->side >> 1) * 0x9e3779b9u + seeds + (uint)(j * GRID + i)) < fill;
-            show(p, child, t, met);
-        }
-}
-
-// A node of one surface: what of its plane is in its sphere, in its box, and in parts of the box that its mask has.
-void draw_surface(global const WideNode* node, int k, const Child* child, Pixel* pixels) {
-    float nx = node->nx[k], ny = node->ny[k], nz = node->nz[k], radius2 = node->bound[k] * node->bound[k];
-    float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
-    float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
-    uint mask_low = node->mask_low[k], mask_high = node->mask_high[k];
-    bool whole = (mask_low & mask_high) == 0xffffffffu;
-    float size_x = fabs(nx), size_y = fabs(ny), size_z = fabs(nz);
-    bool along_x = size_x >= size_y && size_x >= size_z, along_y = !along_x && size_y >= size_z;
-    float3 parts = 8.0f / (high - low);
-    Floats cx = child->x, cy = child->y, cz = child->z, plane = child->plane;
-    int4 part = child->pixels;
-    for (int j = part.s2; j <= part.s3; ++j)
-        for (int i = part.s0; i <= part.s1; ++i) {
-            Pixel* p = pixels + j * GRID + i;
-            Floats t = plane / (p->x * nx + p->y * ny + p->z * nz);
-            Floats x = p->x * t - cx, y = p->y * t - cy, z = p->z * t - cz;
-            // Few comparisons: each costs more than arithmetic.
-            Floats room = LEAST(LEAST(x - low.x, high.x - x), LEAST(y - low.y, high.y - y));
-            room = LEAST(room, LEAST(z - low.z, high.z - z));
-            Flags met = (t > 0.0f) & (t <= p->depth) & (x * x + y * y + z * z <= radius2) & (room >= 0.0f);
-            if (!ANY_LANE(met)) continue;
-            if (!whole) {
-                Floats u = along_x ? (y - low.y) * parts.y : along_y ? (z - low.z) * parts.z : (x - low.x) * parts.x;
-                Floats v = along_x ? (z - low.z) * parts.z : along_y ? (x - low.x) * parts.x : (y - low.y) * parts.y;
-                Numbers bit = TO_NUMBERS(clamp(u, 0.0f, 7.0f)) + 8u * TO_NUMBERS(clamp(v, 0.0f, 7.0f));
-                Numbers bits = select((Numbers)(mask_low), (Numbers)(mask_high), bit >= 32u);
-                met &= ((bits >> (bit & 31u)) & 1u) != 0u;
-            }
-            show(p, child, t, met);
-        }
+// Bounds of a child of a node, from its middle and its normal along the axes of the picture, 1 over its distance, and that
+// of its plane. A picture has `size` pixels for 1 along its axes.
+Outline outline_of(float8 side, float8 across, float8 nearer, float8 bound, float8 facing_side, float8 facing_across,
+                   float8 plane, int8 cloud, float8 size) {
+    // The picture of the cone about a sphere: its directions are c u + s v with unit vectors v across u.
+    float8 s = LEAST(bound * SLACK * nearer, (float8)(1.0f)), c = quick_sqrt(1.0f - s * s) * size;
+    float8 ux = side * nearer, uy = across * nearer;
+    // Along the axis a it reaches to s times the length of a' = a - (a . u) u. Of that the piece of a plane with the normal
+    // n takes the length of a' - (a' . n) n, but for what is of the second order of s.
+    float8 away = plane * nearer, an = facing_side - ux * away, bn = facing_across - uy * away;
+    float8 wide = 1.0f - ux * ux, tall = 1.0f - uy * uy;
+    float8 wide_piece = LEAST(1.0f - 0.5f * ux * ux, SLACK * quick_sqrt(wide - an * an) + 2.0f * s);
+    float8 tall_piece = LEAST(1.0f - 0.5f * uy * uy, SLACK * quick_sqrt(tall - bn * bn) + 2.0f * s);
+    Outline o;
+    o.x = ux * c + (0.5f * GRID - 0.5f);
+    o.y = uy * c + (0.5f * GRID - 0.5f);
+    o.wide = select(wide_piece, SLACK * quick_sqrt(wide), cloud) * s * size + 0.55f;
+    o.tall = select(tall_piece, SLACK * quick_sqrt(tall), cloud) * s * size + 0.55f;
+    // Cones about the end of an axis reach to its end.
+    o.wide = select(o.wide, (float8)(2.0f * GRID), (s >= 1.0f) | (ux * ux + s * s > 1.0f));
+    o.tall = select(o.tall, (float8)(2.0f * GRID), (s >= 1.0f) | (uy * uy + s * s > 1.0f));
+    return o;
 }
 
 #if LUCARNE_FILL_PIXELS
 // Draws a child as the pixel at its middle, if that pixel has a ray: the paper's buffers without ray casting (fig. 11).
-void fill_pixel(const Child* child, Floats columns, Floats rows, Floats distances, Pixel* pixels) {
-    for (int lane = 0; lane < LANES; ++lane) {
-        int i = convert_int_rte(LANE(float, columns, lane)), j = convert_int_rte(LANE(float, rows, lane));
-        if (LANE(float, child->plane, lane) == 0.0f || i < 0 || i >= GRID || j < 0 || j >= GRID) continue;
-        Pixel* p = pixels + j * GRID + i;
-        float distance = LANE(float, distances, lane), depth = LANE(float, p->depth, lane);
-        uint side = LANE(uint, child->side, lane);
-        bool nearest = distance < depth || (distance == depth && side < LANE(uint, p->side, lane));
-        bool cast = LANE(float, p->x, lane) != 0.0f || LANE(float, p->y, lane) != 0.0f || LANE(float, p->z, lane) != 0.0f;
-        if (!cast || !nearest) continue;
-        LANE(float, p->depth, lane) = distance;
-        LANE(uint, p->side, lane) = side;
-    }
+// `k`: its place in the outlines.
+void fill_pixel(const Outline* outlines, int k, float distance, uint side, Picture* picture, int lane) {
+    int i = convert_int_rte(LANE(float, outlines->x, k)), j = convert_int_rte(LANE(float, outlines->y, k));
+    if (i < 0 || i >= GRID || j < 0 || j >= GRID) return;
+    int pixel = j * GRID + i;
+    float3 ray = direction_of(picture, pixel, lane);
+    float depth = PIXEL(float, picture, depth, pixel, lane);
+    bool nearest = distance < depth || (distance == depth && side < PIXEL(uint, picture, side, pixel, lane));
+    if (dot(ray, ray) == 0.0f || !nearest) return;
+    PIXEL(float, picture, depth, pixel, lane) = distance;
+    PIXEL(uint, picture, side, pixel, lane) = side;
 }
 #endif
 
-// Draws a child of a node into the pictures of those lanes above whose planes it rises.
-void draw_child(global const WideNode* node, int k, uint slot, const Starts* s, Pixel* pixels) {
-    float bound = node->bound[k], nx = node->nx[k], ny = node->ny[k], nz = node->nz[k];
-    bool cloud = node->high_x[k] == kCloud;
-    Child child;
-    child.x = node->x[k] - s->x;
-    child.y = node->y[k] - s->y;
-    child.z = node->z[k] - s->z;
-    Floats distance2 = MOST(child.x * child.x + child.y * child.y + child.z * child.z, (Floats)(1e-30f));
-    Floats height = child.x * s->normal_x + child.y * s->normal_y + child.z * s->normal_z;
-    Floats facing = nx * s->normal_x + ny * s->normal_y + nz * s->normal_z;
-    // What the discs of the child rise above its middle: those of the point's own surface lie below the start.
-    Floats rise = bound * SLACK * quick_sqrt(1.0f - facing * facing) + node->thickness[k];
-    Floats along = child.x * s->axis_x + child.y * s->axis_y + child.z * s->axis_z;
-    Flags seen = (height > -LEAST(rise, (Floats)(bound))) & (along > -bound);
-    if (!ANY_LANE(seen)) return;
-    child.plane = child.x * nx + child.y * ny + child.z * nz;
-    child.side = (Numbers)(2u * slot) + select((Numbers)(0u), (Numbers)(1u), child.plane >= 0.0f);
-    Floats nearer = quick_rsqrt(distance2);
-    // The picture of the cone about a sphere: its directions are c u + s v with unit vectors v across u.
-    Floats sine = LEAST(bound * SLACK * nearer, (Floats)(1.0f)), c = quick_sqrt(1.0f - sine * sine) * s->pixels;
-    Floats ux = (child.x * s->side_x + child.y * s->side_y + child.z * s->side_z) * nearer;
-    Floats uy = (child.x * s->across_x + child.y * s->across_y + child.z * s->across_z) * nearer;
-    Floats px = ux * c + (0.5f * GRID - 0.5f), py = uy * c + (0.5f * GRID - 0.5f);
-    // Along the axis a it reaches to s times the length of a' = a - (a . u) u. Of that the piece of a plane with the normal
-    // n takes the length of a' - (a' . n) n, but for what is of the second order of s.
-    Floats wide = 1.0f - ux * ux, tall = 1.0f - uy * uy;
-    if (!cloud) {
-        Floats dn = child.plane * nearer, none = (Floats)(0.0f);
-        Floats an = nx * s->side_x + ny * s->side_y + nz * s->side_z - ux * dn;
-        Floats bn = nx * s->across_x + ny * s->across_y + nz * s->across_z - uy * dn;
-        wide = LEAST(1.0f - 0.5f * ux * ux, SLACK * quick_sqrt(wide - an * an) + 2.0f * sine);
-        tall = LEAST(1.0f - 0.5f * uy * uy, SLACK * quick_sqrt(tall - bn * bn) + 2.0f * sine);
-    } else {
-        child.plane = sqrt(distance2);
-        wide = SLACK * quick_sqrt(wide);
-        tall = SLACK * quick_sqrt(tall);
-    }
-    child.plane = select((Floats)(0.0f), child.plane, seen);
-#if LUCARNE_FILL_PIXELS
-    fill_pixel(&child, px, py, sqrt(distance2), pixels);
-    return;
+#if LANES == 8
+#include "gi/gather/draw_eight.cl"
+#else
+#include "gi/gather/draw_one.cl"
 #endif
-    wide = wide * sine * s->pixels + 0.55f;
-    tall = tall * sine * s->pixels + 0.55f;
-    // Cones about the end of an axis reach to its end.
-    wide = select(wide, (Floats)(2.0f * GRID), (sine >= 1.0f) | (ux * ux + sine * sine > 1.0f));
-    tall = select(tall, (Floats)(2.0f * GRID), (sine >= 1.0f) | (uy * uy + sine * sine > 1.0f));
-    Floats none = (Floats)(2.0f * GRID);
-    float4 ends = ceil(least_lanes(select(none, px - wide, seen), select(none, -px - wide, seen),
-                                   select(none, py - tall, seen), select(none, -py - tall, seen)));
-    child.pixels = convert_int4(fmax(fmin(ends * (float4)(1, -1, 1, -1), (float4)(GRID, GRID - 1, GRID, GRID - 1)),
-                                     (float4)(0, -1, 0, -1)));
-    if (cloud && node->child[k] >= 0)
-        draw_cloud(node, k, &child, s->seed, pixels);
-    else if (node->child[k] < 0)
-        draw_surfel(node, k, &child, pixels);
-    else
-        draw_surface(node, k, &child, pixels);
-}
 
 // Draws everything above the lanes' planes into their pictures: for each pixel the distance of the nearest disc and its
 // side. Which nodes are opened and which are left out is decided for all lanes together.
-void draw(global const WideNode* nodes, const Starts* starts, Pixel* pixels) {
+void draw(global const WideNode* nodes, const Starts* starts, Picture* picture) {
     Group group = group_of(starts);
     int stack[STACK];
     int top = 0;
@@ -434,9 +320,6 @@ void draw(global const WideNode* nodes, const Starts* starts, Pixel* pixels) {
         }
 #endif
         if (!any_of(drawn)) continue;
-        int draws[8];
-        vstore8(drawn, 0, draws);
-        for (int k = 0; k < 8; ++k)
-            if (draws[k]) draw_child(node, k, (uint)(at * 8 + k), starts, pixels);
+        draw_children(node, (uint)at * 8, drawn, starts, picture);
     }
 }

@@ -33,7 +33,7 @@ class Division {
     PointGroups run() && {
         if (!keys_.empty()) divide(0, keys_.size());
         groups_.first.push_back(static_cast<uint32_t>(keys_.size()));
-        return std::move(groups_);
+        return split_small(groups_);
     }
 
  private:
@@ -87,6 +87,29 @@ class Division {
             if (own > gap) gap = own, cut = i;
         }
         return gap > kGap * extent || last - first <= kGroupedPoints ? cut : middle(first, last);
+    }
+
+    /// Returns large groups, and behind them the points of small ones one by one.
+    static PointGroups split_small(const PointGroups& groups) {
+        PointGroups result;
+        std::vector<uint32_t> single;
+        for (size_t group = 0; group + 1 < groups.first.size(); ++group) {
+            const auto begin = groups.order.begin() + groups.first[group];
+            const auto end = groups.order.begin() + groups.first[group + 1];
+            if (static_cast<size_t>(end - begin) < kLeastGroup) {
+                single.insert(single.end(), begin, end);
+                continue;
+            }
+            result.first.push_back(static_cast<uint32_t>(result.order.size()));
+            result.order.insert(result.order.end(), begin, end);
+        }
+        result.full = result.first.size();
+        for (const uint32_t point : single) {
+            result.first.push_back(static_cast<uint32_t>(result.order.size()));
+            result.order.push_back(point);
+        }
+        result.first.push_back(static_cast<uint32_t>(result.order.size()));
+        return result;
     }
 
     std::vector<Key> keys_;

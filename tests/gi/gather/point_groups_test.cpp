@@ -38,7 +38,13 @@ TEST(PointGroups, HoldEveryPointOnce) {
         EXPECT_EQ(groups.first.back(), count);
         for (size_t i = 0; i + 1 < groups.first.size(); ++i) {
             EXPECT_LT(groups.first[i], groups.first[i + 1]);
-            EXPECT_LE(groups.first[i + 1] - groups.first[i], kGroupedPoints);
+            const uint32_t size = groups.first[i + 1] - groups.first[i];
+            EXPECT_LE(size, kGroupedPoints);
+            if (i < groups.full) {
+                EXPECT_GE(size, kLeastGroup);
+            } else {
+                EXPECT_EQ(size, 1u);
+            }
         }
     }
 }
@@ -53,6 +59,16 @@ TEST(PointGroups, AreNarrowAndFullWherePointsAreDense) {
             EXPECT_LT(glm::distance(glm::vec3(a.position), glm::vec3(b.position)), 0.3f);
         }
     EXPECT_LT(groups.first.size(), 20000 / 6);
+}
+
+TEST(PointGroups, SmallGroupsAreTakenApart) {
+    std::vector<GatherPoint> points;
+    for (int place = 0; place < 20; ++place)
+        for (size_t i = 0; i < (place % 2 ? kLeastGroup : kLeastGroup - 1); ++i)
+            points.push_back(point_at({static_cast<float>(1 << place), 0, 0}, {0, 0, 1}));
+    const PointGroups groups = group_points(points, 1);
+    EXPECT_EQ(groups.full, 10u);
+    EXPECT_EQ(groups.first.size(), 10 + 10 * (kLeastGroup - 1) + 1);
 }
 
 TEST(PointGroups, FarPointsStandAlone) {
