@@ -1,5 +1,6 @@
 // Draws nodes into the micro-buffers of eight points at once, each in a lane of the vectors (micro_buffer.cl): a child
 // meets one pixel's rays of all of them at a time.
+
 // Sets the rays of a pixel that shows nothing yet.
 void set_rays(Picture* picture, int column, int row, float8 x, float8 y, float8 z) {
     Pixel* pixel = picture->pixels + row * GRID + column;
@@ -14,7 +15,7 @@ void set_rays(Picture* picture, int column, int row, float8 x, float8 y, float8 
 typedef struct {
     float8 x, y, z;  // its middle, from the start of the rays
     float8 plane;    // its plane: n . p = plane; zero: it is not seen
-    uint8 side;    // which of its sides is seen
+    uint8 side;      // which of its sides is seen
     int4 pixels;     // first and last column, first and last row that any lane may see it at
 } Child;
 

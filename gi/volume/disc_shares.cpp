@@ -16,9 +16,9 @@ namespace {
 /// Smaller shares may come from rounding alone.
 constexpr float kLeastShare = 1e-6f;
 
-/// A border that cuts a disc: between cells number - 1 and number along an axis.
+/// A border between voxels that cuts a disc, across an axis.
 struct Border {
-    int axis = 0, number = 0;
+    int axis = 0;
     float distance = 0;  ///< from the disc's middle in its plane, radii
     float below = 0;     ///< share of the disc before it
     float reach = 0;     ///< of the disc along the axis, voxels
@@ -72,8 +72,8 @@ size_t few_parts(const DiscBatch& discs, size_t disc, std::array<DiscPart, 4>& p
             continue;
         }
         if (last - first[axis] > 1 || count == borders.size()) return 0;
-        borders[count++] = {axis, last, std::clamp(discs.distance[k][disc], -1.0f, 1.0f),
-                            discs.below[k][disc], discs.radius[disc] * discs.across[k][disc]};
+        borders[count++] = {axis, std::clamp(discs.distance[k][disc], -1.0f, 1.0f), discs.below[k][disc],
+                            discs.radius[disc] * discs.across[k][disc]};
     }
     parts[0] = {first, 1, box};
     if (count == 0) return 1;
