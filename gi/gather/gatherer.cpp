@@ -220,7 +220,9 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
                               uint32_t side, uint64_t seed, std::span<glm::vec4> results,
                               const std::atomic<bool>* stop, const std::function<void(size_t)>& done,
                               Fill fill) {
-    const auto [lit, glossy, sky, open] = asked(what);
+    const Asked light = asked(what);
+    const uint32_t lit = light.lit, glossy = light.glossy, open = light.open;
+    const SkyPicture& sky = light.sky;
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
     const Launch& launch = launch_of(device);
