@@ -220,9 +220,9 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
                               uint32_t side, uint64_t seed, std::span<glm::vec4> results,
                               const std::atomic<bool>* stop, const std::function<void(size_t)>& done,
                               Fill fill) {
-    const Asked light = asked(what);
-    const uint32_t lit = light.lit, glossy = light.glossy, open = light.open;
-    const SkyPicture& sky = light.sky;
+    const Asked wanted = asked(what);
+    const uint32_t lit = wanted.lit, glossy = wanted.glossy, open = wanted.open;
+    const SkyPicture& sky = wanted.sky;
     const uint32_t grid = grid_for(side);
     LUCARNE_TRY(make_rays(device, grid, seed));
     const Launch& launch = launch_of(device);
