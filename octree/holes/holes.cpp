@@ -107,8 +107,10 @@ class HoleSearch {
         std::vector<Hole> holes;
         std::vector<Tripod> tripods;
         if (know_stations_) {
-            for (const int leak : kLeaks) find_wide(leak, holes);
-            for (const int leak : kLeaks) find_narrow(leak, holes);
+            for (const int leak : kLeaks)
+                find_with_stations(leak, holes, [&](HoleFinder& in) { in.find(holes, tripods); });
+            for (const int leak : kLeaks)
+                find_with_stations(leak, holes, [&](HoleFinder& in) { in.find_narrow(holes); });
         } else {
             for (size_t i = 0; i < grids_.size(); ++i)
                 HoleFinder(grids_[i], voxels_, i, false).find(holes, tripods);
@@ -145,18 +147,14 @@ class HoleSearch {
                 for (const uint32_t cell : *cells) grids_[hole.plane].set(cell, PlaneCell::surface);
     }
 
-    void find_wide(int leak, std::vector<Hole>& holes) {
-        std::vector<Tripod> none;
+    /// Finds holes that `find` looks for in one plane, and closes them.
+    template <class Find>
+    void find_with_stations(int leak, std::vector<Hole>& holes, const Find& find) {
         const size_t known = holes.size();
-        for (size_t i = 0; i < grids_.size(); ++i)
-            HoleFinder(grids_[i], voxels_, i, true, leak).find(holes, none);
-        close(std::span(holes).subspan(known));
-    }
-
-    void find_narrow(int leak, std::vector<Hole>& holes) {
-        const size_t known = holes.size();
-        for (size_t i = 0; i < grids_.size(); ++i)
-            HoleFinder(grids_[i], voxels_, i, true, leak).find_narrow(holes);
+        for (size_t i = 0; i < grids_.size(); ++i) {
+            HoleFinder finder(grids_[i], voxels_, i, true, leak);
+            find(finder);
+        }
         close(std::span(holes).subspan(known));
     }
 
