@@ -87,7 +87,7 @@ BrightLight BrightLight::find(const LitTree& scene, const TracedTree& traced,
     const double weight = static_cast<double>(found.vpls_.size()) / kVplsOfAPoint;
     found.reach2_ = static_cast<float>(weight * power / (kMostOfAVpl * kPi * typical));
     found.traced_ = &traced;
-    pull_light(tree, bright, found.excess_);
+    found.excess_ = shared(pull_light(tree, bright));
     return found;
 }
 

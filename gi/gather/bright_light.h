@@ -31,7 +31,7 @@ class BrightLight {
 
     bool empty() const { return vpls_.empty(); }
     /// Of each slot: what of its radiance VPLs bring to far points, W/(sr m^2).
-    std::span<const SideLight> excess() const { return excess_; }
+    SharedLight excess() const { return excess_; }
     /// Frees excess(), which nothing here needs.
     void drop_excess() { excess_ = {}; }
     float reach2() const { return reach2_; }  ///< m^2
@@ -49,7 +49,7 @@ class BrightLight {
 
  private:
     const TracedTree* traced_ = nullptr;
-    std::vector<SideLight> excess_;
+    SharedLight excess_;
     std::vector<VirtualLight> vpls_;
     float reach2_ = 0;
 };

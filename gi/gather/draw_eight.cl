@@ -36,6 +36,7 @@ void show(Pixel* pixel, const Child* child, float8 t, int8 met) {
 
 void draw_surfel(global const WideNode* node, int k, const Child* child, Pixel* pixels) {
     float nx = node->nx[k], ny = node->ny[k], nz = node->nz[k], radius2 = node->bound[k] * node->bound[k];
+    float edge_x = node->low_x[k], edge_y = node->low_y[k], edge_z = node->low_z[k];
     float8 cx = child->x, cy = child->y, cz = child->z, plane = child->plane;
     int4 part = child->pixels;
     for (int j = part.s2; j <= part.s3; ++j)
@@ -44,6 +45,8 @@ void draw_surfel(global const WideNode* node, int k, const Child* child, Pixel* 
             float8 t = plane / (p->x * nx + p->y * ny + p->z * nz);
             float8 x = p->x * t - cx, y = p->y * t - cy, z = p->z * t - cz;
             int8 met = (t > 0.0f) & (t <= p->depth) & (x * x + y * y + z * z <= radius2);
+            if (!any_of(met)) continue;
+            met &= x * edge_x + y * edge_y + z * edge_z <= 1.0f;
             if (any_of(met)) show(p, child, t, met);
         }
 }

@@ -67,7 +67,8 @@ void draw_child(global const WideNode* node, const Children* children, int k, ui
     float radius2 = node->bound[k] * node->bound[k];
     float3 low = (float3)(node->low_x[k], node->low_y[k], node->low_z[k]);
     float3 high = (float3)(node->high_x[k], node->high_y[k], node->high_z[k]);
-    if (high.x == kCloud) low = (float3)(-NOTHING), high = (float3)(NOTHING);
+    float3 edge = node->child[k] < 0 ? low : (float3)(0.0f);  // where a surfel ends
+    if (high.x == kCloud || node->child[k] < 0) low = (float3)(-NOTHING), high = (float3)(NOTHING);
     bool narrow = right - left < FEW_COLUMNS;
     int other = narrow ? COLUMNS : 4;  // where the second four of the eight pixels are, from the first four
     for (int j = upper; j <= lower; j += narrow ? 2 : 1)
@@ -86,6 +87,7 @@ void draw_child(global const WideNode* node, const Children* children, int k, ui
             room = LEAST(room, LEAST(oz - low.z, high.z - oz));
             int8 met = (t > 0.0f) & (t <= nearest) & (ox * ox + oy * oy + oz * oz <= radius2) & (room >= 0.0f);
             if (!any_of(met)) continue;
+            met &= ox * edge.x + oy * edge.y + oz * edge.z <= 1.0f;
             for (int lane = 0; lane < 8; ++lane)
                 if (((int*)&met)[lane])
                     show(node, k, side, pixel + (lane & 3) + (lane >> 2) * other, ((float*)&t)[lane],

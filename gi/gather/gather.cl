@@ -17,6 +17,8 @@
 // What is farther than so many lifts for each pixel of a side of a picture that shows a half space appears less than a
 // quarter of a pixel from where the surface would see it.
 #define NEAR 2.0f
+// Backs that are so much brighter than their fronts, and than what is typical, are traced.
+#define BRIGHT 4.0f
 
 // Returns the slot whose light the surface receives from a direction. Rays start above the surface to clear its noise,
 // and so would see everything from too near. Therefore the light is that of the point where the line from the surface
@@ -47,11 +49,11 @@ bool shows_back(global const WideNode* nodes, uint slot, float3 place) {
     return dot(slot_axis(nodes, slot), slot_middle(nodes, slot) - place) >= 0.0f;
 }
 
-// Whether the back of a slot sends much more light than its front, or nothing is known about it.
-bool back_is_bright(global const float* light, uint slot) {
+// Whether the back of a slot sends much more light than its front and than is `typical`, or nothing is known about it.
+bool back_is_bright(global const float* light, uint slot, float typical) {
     if (!light) return true;
     float3 front = vload3(2 * slot, light), back = vload3(2 * slot + 1, light);
-    return back.x + back.y + back.z > 4.0f * (front.x + front.y + front.z);
+    return back.x + back.y + back.z > BRIGHT * fmax(front.x + front.y + front.z, 3.0f * typical);
 }
 
 // A micro-buffer's place: its start, the axes of its picture, and its set of rays, x and y of all pixels in the unit
@@ -159,9 +161,11 @@ void draw_pictures(global const WideNode* nodes, global const GatherPoint* point
 // its back. Scans turn their fronts to the room; backs may be a hundred times as bright, outside in the sun. So where a
 // back seems to be seen, the ray is traced surfel by surfel, for points of the picture; for those between which light is
 // exchanged it would take three times as long. Where the light of both sides is known, only backs that are much brighter
-// are traced: in scans whose normals are often reversed, most rays see backs.
+// are traced: in scans whose normals are often reversed, most rays see backs. `typical`: the mean radiance that points
+// receive; where reversed surfels are lit by the lamps of their room, their backs are brighter than their fronts, but not
+// than that.
 uint seen_side(global const WideNode* nodes, const Pictures* pictures, int lane, int pixel, float3 direction,
-               global const float* light) {
+               global const float* light, float typical) {
     const Place* place = &pictures->places[lane];
     uint side = PIXEL(uint, &pictures->picture, side, pixel, lane);
     if (side == EMPTY) return kSeesSky;
@@ -175,7 +179,7 @@ uint seen_side(global const WideNode* nodes, const Pictures* pictures, int lane,
         if (slot != side / 2) side = 2 * slot + (shows_back(nodes, slot, place->start) ? 1u : 0u);
     }
     uint slot = side / 2;
-    if ((side & 1) && place->shown && nodes[slot / 8].child[slot % 8] >= 0 && back_is_bright(light, slot)) {
+    if ((side & 1) && place->shown && nodes[slot / 8].child[slot % 8] >= 0 && back_is_bright(light, slot, typical)) {
         float about = 2.0f * nodes[slot / 8].bound[slot % 8], most = NOTHING;
         slot = first_surfel(nodes, place->start, direction, fmax(depth - about, 0.0f), &most);
         if (slot == EMPTY) return kSeesSky;
@@ -231,8 +235,9 @@ float3 without_bright(float3 radiance, global const float* bright, float reach2,
 // nothing. `light`: six floats a slot, the radiance of its front and of its back; lit = 0: `nodes` only block.
 // `lobe_light` and `lobe_directions`, likewise: what it sends out by specular lobes, if glossy is not 0. `sky` shines
 // where there is nothing; without texels it is dark. What is `bright` is left out unless reach2 is negative. `open`:
-// spheres at openings, with so many `densities` for each point.
-kernel void gather(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
+// spheres at openings, with so many `densities` for each point. `typical`: see seen_side(); 0: unknown.
+kernel void gather(global const WideNode* nodes, global const float* light, uint lit, float typical,
+                   global const float* lobe_light,
                    global const float* lobe_directions, uint glossy, global const float* bright, float reach2,
                    global const float* sky_texels, SkyPicture sky, global const float4* openings, uint open,
                    global const float* densities, global const GatherPoint* points, global const float* rays,
@@ -252,7 +257,7 @@ kernel void gather(global const WideNode* nodes, global const float* light, uint
             if (!(height > 0.0f)) continue;
             float weight = 1.0f;
             if (exponent > 0.0f) weight = pow(dot(direction, place->axis), exponent - 1.0f) * height;
-            uint side = seen_side(nodes, &pictures, lane, pixel, direction, lit ? light : 0);
+            uint side = seen_side(nodes, &pictures, lane, pixel, direction, lit ? light : 0, typical);
             if (side == kSeesSky) {
                 ++empty;
                 if (sky.width == 0) continue;
@@ -293,7 +298,7 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
             uint code = kSeesNothing;
             if (dot(direction, pictures.places[lane].normal) > 0.0f) {
                 ++cast;
-                code = seen_side(nodes, &pictures, lane, pixel, direction, 0);
+                code = seen_side(nodes, &pictures, lane, pixel, direction, 0, 0.0f);
                 if (code != kSeesSky)
                     near += 1.0f / fmax(PIXEL(float, &pictures.picture, depth, pixel, lane), fmax(lift, 1e-6f));
             }

@@ -118,18 +118,17 @@ Result<void> Gatherer::set_tree(ClDevice& device, const std::shared_ptr<const Su
     return device.lend(nodes_, std::as_bytes(std::span(nothing.get(), 1)), nothing, "tree of surfels");
 }
 
-Result<void> Gatherer::set_light(ClDevice& device, std::span<const SideLight> slots) {
+Result<void> Gatherer::set_light(ClDevice& device, SharedLight slots) {
     set_no_bright();
-    if (slots.empty()) return {};
-    const auto bytes = std::as_bytes(slots);
-    LUCARNE_TRY(device.reserve(light_, bytes.size(), "light of the tree"));
-    return light_.upload(0, bytes);
+    typical_ = 0;
+    if (slots->empty()) return {};
+    const auto bytes = std::as_bytes(std::span(*slots));
+    return device.lend(light_, bytes, std::move(slots), "light of the tree");
 }
 
-Result<void> Gatherer::set_bright(ClDevice& device, std::span<const SideLight> slots, float reach2) {
-    const auto bytes = std::as_bytes(slots);
-    LUCARNE_TRY(device.reserve(bright_, bytes.size(), "bright light of the tree"));
-    LUCARNE_TRY(bright_.upload(0, bytes));
+Result<void> Gatherer::set_bright(ClDevice& device, SharedLight slots, float reach2) {
+    const auto bytes = std::as_bytes(std::span(*slots));
+    LUCARNE_TRY(device.lend(bright_, bytes, std::move(slots), "bright light of the tree"));
     reach2_ = reach2;
     return {};
 }
@@ -242,7 +241,7 @@ Result<void> Gatherer::gather(ClDevice& device, Gathered what, std::span<const G
         LUCARNE_TRY(send_points(device, some, firsts, points_));
         LUCARNE_TRY(device.reserve(results_, some.size() * sizeof(glm::vec4), "gathered light"));
         const size_t count = end - begin;
-        LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit,
+        LUCARNE_TRY(kernel->run(ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit, typical_,
                                 glossy ? lobe_light_ : nodes_, glossy ? lobe_directions_ : nodes_, glossy,
                                 reach2_ >= 0 ? bright_ : nodes_, reach2_,
                                 sky.width > 0 ? sky_texels_ : nodes_, sky, open > 0 ? spheres_ : nodes_, open,

@@ -54,16 +54,20 @@ class Gatherer {
     /// Sends the tree to the device, or lends it to a processor (ClDevice::lend()); null: none. Errors:
     /// device memory.
     Result<void> set_tree(ClDevice& device, const std::shared_ptr<const SurfelTree>& tree);
-    /// Sends the light of the tree's slots (pull_light()). Errors: device memory.
-    Result<void> set_light(ClDevice& device, std::span<const SideLight> slots);
+    /// Sends the light of the tree's slots (pull_light()) to the device, or lends it to a processor. Errors:
+    /// device memory.
+    Result<void> set_light(ClDevice& device, SharedLight slots);
     /// Sends specular light to the device, which the slots send out beside that of set_light() until it is
     /// replaced. Errors: device memory.
     Result<void> set_lobes(ClDevice& device, const SideLobes& lobes);
     /// Leaves light out of what gather() and shade() find (BrightLight), until set_no_bright() or other light
     /// or another tree comes: of each slot that much, W/(sr m^2), as far as it is far beyond the root of
     /// `reach2`, m^2. Errors: device memory.
-    Result<void> set_bright(ClDevice& device, std::span<const SideLight> slots, float reach2);
+    Result<void> set_bright(ClDevice& device, SharedLight slots, float reach2);
     void set_no_bright() { reach2_ = kNoReach; }
+    /// Tells the mean radiance that points usually receive, W/(sr m^2), until other light comes: backs of
+    /// nodes that are not much brighter are taken for what they are drawn as.
+    void set_typical(float radiance) { typical_ = radiance; }
     /// Sends the sky to the device; it shines where there are no surfels. Errors: device memory.
     Result<void> set_sky(ClDevice& device, const GatherSky& sky);
     /// Has each point look for the sky through openings with so many rays of its own as well, until
@@ -116,6 +120,7 @@ class Gatherer {
     SkyPicture sky_{};
     bool empty_ = true, glossy_ = false;
     float reach2_ = kNoReach;
+    float typical_ = 0;
     float reach_ = 0;  ///< how far away what points see usually is, m
     const SkyOpenings* openings_ = nullptr;
     uint32_t rays_to_sky_ = 0;

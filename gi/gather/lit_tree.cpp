@@ -13,16 +13,15 @@ Result<void> LitTree::set_surfels(Frame& frame) {
 Result<void> LitTree::set_light(Frame& frame, const std::vector<LightView>& views, LightGBuffers& gbuffers) {
     lobes_ = {};
     LUCARNE_TRY(lit_.set_light(frame, views, gbuffers, Specular::apart));
+    lit_.free_device();
     lobes_ = pulled(lit_.lobes());
     return {};
 }
 
 SideLobes LitTree::pulled(const SideLobes& by_surfel) const {
-    SideLobes slots;
-    if (by_surfel.light.empty()) return slots;
-    pull_light(*tree_, by_surfel.light, slots.light);
-    pull_light(*tree_, by_surfel.directions, slots.directions);
-    return slots;
+    if (by_surfel.light.empty()) return {};
+    return {.light = pull_light(*tree_, by_surfel.light),
+            .directions = pull_light(*tree_, by_surfel.directions)};
 }
 
 }  // namespace lucarne::gi

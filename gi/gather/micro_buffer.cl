@@ -116,6 +116,7 @@ uint first_surfel(global const WideNode* nodes, float3 from, float3 direction, f
         float8 ox = direction.x * distance - dx, oy = direction.y * distance - dy, oz = direction.z * distance - dz;
         int8 met = leaf & (distance > least) & (ox * ox + oy * oy + oz * oz <= bound * bound);
         if (!any_of(met)) continue;
+        met &= ox * vload8(0, node->low_x) + oy * vload8(0, node->low_y) + oz * vload8(0, node->low_z) <= 1.0f;
         int meets[8];
         float distances[8];
         vstore8(met, 0, meets);

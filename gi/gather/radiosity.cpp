@@ -86,7 +86,7 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
     const auto own = scene.own_light();
     const auto reflectances = scene.reflectances();
     light.assign(own.begin(), own.end());
-    std::vector<SideLight> last = light, slots;
+    std::vector<SideLight> last = light;
     std::vector<glm::vec3> gathered(points_.size(), glm::vec3(0.0f));
     // Returns what a surfel reflects of the light that its places gathered.
     const auto reflected = [&](size_t i) -> SideLight {
@@ -107,8 +107,7 @@ Result<void> Radiosity::compute(ClDevice& device, const LitTree& scene, Gatherer
         light = last;
     }
     for (uint32_t bounce = 0; bounce < settings.bounces; ++bounce) {
-        pull_light(scene.tree(), last, slots);
-        LUCARNE_TRY(gatherer.set_light(device, slots));
+        LUCARNE_TRY(gatherer.set_light(device, shared(pull_light(scene.tree(), last))));
         const SideLobes none;
         LUCARNE_TRY(gatherer.set_lobes(device, bounce == 0 ? scene.lobes() : none));
         LUCARNE_TRY(gather(device, gatherer, Gathered::light_of_surfels, settings, points_, gathered, stop));

@@ -1,6 +1,5 @@
 #include "gi/gather/traced_tree.h"
 
-#include <limits>
 #include <utility>
 
 #include "gi/gl_frame.h"
@@ -10,24 +9,32 @@ namespace lucarne::gi {
 Result<TracedTree> TracedTree::create(const Frame& frame, const LitTree& scene) {
     const SurfelTree& tree = scene.tree();
     TracedTree traced;
-    std::vector<Surfel> surfels;
-    {  // what was downloaded is freed before Embree needs memory
-        std::vector<uint32_t> ids;
-        const std::vector<Surfel> downloaded = frame.gl.pool.download(*frame.gl.cuts.light, &ids);
-        constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-        std::vector<uint32_t> place_of(scene.surfels().size(), kNone);
-        for (uint32_t i = 0; i < ids.size(); ++i)
-            if (tracing::has_disc(downloaded[i])) place_of[ids[i]] = i;
-        surfels.reserve(downloaded.size());
-        for (size_t slot = 0; slot < tree.surfels.size(); ++slot) {
-            const uint32_t id = tree.surfels[slot];
-            if (id == kNoSurfel || place_of[id] == kNone) continue;
-            surfels.push_back(downloaded[place_of[id]]);
-            surfels.back().area = tree.areas[slot];
-            traced.slot_of.push_back(static_cast<uint32_t>(slot));
-            traced.surfel_of.push_back(id);
-        }
+    // One copy of the surfels at a time, in the order of the slots: they take more memory than all else here.
+    std::vector<uint32_t> place_of(scene.surfels().size(), kNoSurfel);
+    for (size_t slot = 0; slot < tree.surfels.size(); ++slot) {
+        const uint32_t id = tree.surfels[slot];
+        if (id == kNoSurfel) continue;
+        place_of[id] = static_cast<uint32_t>(traced.slot_of.size());
+        traced.slot_of.push_back(static_cast<uint32_t>(slot));
+        traced.surfel_of.push_back(id);
     }
+    std::vector<Surfel> surfels(traced.slot_of.size());
+    frame.gl.pool.each_surfel(*frame.gl.cuts.light, [&](uint32_t id, const Surfel& surfel) {
+        const uint32_t place = place_of[id];
+        if (place == kNoSurfel) return;
+        surfels[place] = surfel;
+        surfels[place].area = tree.areas[traced.slot_of[place]];
+    });
+    size_t kept = 0;
+    for (size_t i = 0; i < surfels.size(); ++i) {
+        if (!tracing::has_disc(surfels[i])) continue;
+        surfels[kept] = surfels[i];
+        traced.slot_of[kept] = traced.slot_of[i];
+        traced.surfel_of[kept++] = traced.surfel_of[i];
+    }
+    surfels.resize(kept);
+    traced.slot_of.resize(kept);
+    traced.surfel_of.resize(kept);
     LUCARNE_ASSIGN(traced.tracer, tracing::SurfelTracer::create(std::move(surfels)));
     return traced;
 }

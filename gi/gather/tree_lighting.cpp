@@ -126,7 +126,7 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
     std::vector<SideLight> light;
     LUCARNE_TRY(exchange(frame, settings, points, light));
     if (frame.stopped()) return {};
-    pull_light(lit_.tree(), light, slots_);
+    slots_ = shared(pull_light(lit_.tree(), light));
     LUCARNE_TRY(set_slots(slots_, lobes_));
     replaced_ = false;
     light_of_ = std::move(basis);
@@ -137,6 +137,7 @@ Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<con
                                                      Gathered what, uint64_t seed) {
     LUCARNE_TRY(trace_tree(frame));
     gatherer_.set_no_bright();
+    gatherer_.set_typical(0);
     std::vector<glm::vec4> found(pilots.size());
     if (pilots.empty()) return nullptr;
     LUCARNE_TRY(
@@ -146,7 +147,8 @@ Result<const BrightLight*> TreeLighting::find_bright(Frame& frame, std::span<con
     for (const glm::vec4& light : found)
         typical += mean_colour(glm::vec3(light)) / static_cast<float>(pilots.size());
     if (!(typical > 0)) return nullptr;
-    const std::vector<SideLight>& slots = replaced_ ? own_slots_ : slots_;
+    gatherer_.set_typical(typical);
+    const std::vector<SideLight>& slots = replaced_ ? own_slots_ : *slots_;
     bright_light_ = BrightLight::find(lit_, *traced_, slots, pilots, typical, seed, frame.stop);
     if (bright_light_.empty()) return nullptr;
     LUCARNE_TRY(gatherer_.set_bright(*opencl_, bright_light_.excess(), bright_light_.reach2()));
@@ -180,10 +182,10 @@ Result<void> TreeLighting::trace_tree(Frame& frame) {
 
 Result<void> TreeLighting::set_irradiance(std::span<const glm::vec3> irradiance, bool own) {
     if (own_slots_.empty()) {
-        pull_light(lit_.tree(), lit_.own_light(), own_slots_);
+        own_slots_ = pull_light(lit_.tree(), lit_.own_light());
         std::vector<SideLight> reflectances;
         for (const glm::vec3& r : lit_.reflectances()) reflectances.push_back({r, r});
-        pull_light(lit_.tree(), reflectances, reflecting_);
+        reflecting_ = pull_light(lit_.tree(), reflectances);
     }
     std::vector<SideLight> slots(own_slots_.size());
     parallel_ranges(slots.size(), kSlotsATask, [&](size_t first, size_t last) {
@@ -194,11 +196,11 @@ Result<void> TreeLighting::set_irradiance(std::span<const glm::vec3> irradiance,
         }
     });
     replaced_ = true;
-    return set_slots(slots, own ? lit_.lobes() : SideLobes{});
+    return set_slots(shared(std::move(slots)), own ? lit_.lobes() : SideLobes{});
 }
 
-Result<void> TreeLighting::set_slots(std::span<const SideLight> slots, const SideLobes& lobes) {
-    LUCARNE_TRY(gatherer_.set_light(*opencl_, slots));
+Result<void> TreeLighting::set_slots(SharedLight slots, const SideLobes& lobes) {
+    LUCARNE_TRY(gatherer_.set_light(*opencl_, std::move(slots)));
     return gatherer_.set_lobes(*opencl_, lobes);
 }
 

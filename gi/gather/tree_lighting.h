@@ -83,7 +83,7 @@ class TreeLighting {
     Result<void> trace_tree(Frame& frame);
     void drop_openings();
     /// Gives the gatherer this light.
-    Result<void> set_slots(std::span<const SideLight> slots, const SideLobes& lobes);
+    Result<void> set_slots(SharedLight slots, const SideLobes& lobes);
 
     ClDevice* opencl_ = nullptr;  ///< of the frame's device
     Gatherer gatherer_;
@@ -105,9 +105,9 @@ class TreeLighting {
     std::optional<std::pair<CameraView, uint64_t>> openings_of_;  ///< view, revision of the settings
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
-    std::vector<SideLight> slots_;  ///< the light of make_light()
-    SideLobes lobes_;               ///< by slot, that belong to it
-    bool replaced_ = false;         ///< the gatherer has other light
+    SharedLight slots_;      ///< the light of make_light()
+    SideLobes lobes_;        ///< by slot, that belong to it
+    bool replaced_ = false;  ///< the gatherer has other light
     std::vector<SideLight> own_slots_,
         reflecting_;  ///< the surfels' own light, and their reflectances, pulled
 };

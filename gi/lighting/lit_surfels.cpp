@@ -37,6 +37,10 @@ Result<void> LitSurfels::begin_light(Frame& frame, Specular specular) {
     own_.assign(count, {});
     reflectances_.assign(count, glm::vec3(0.0f));
     if (count == 0) return {};
+    if (!flat_) {
+        LUCARNE_TRY(frame.gl.device.reserve(flat_, count * sizeof(FlatSurfel), "flat surfels"));
+        flat_.upload_all(surfels_);
+    }
     LUCARNE_TRY(frame.gl.device.reserve(irradiance_, count * sizeof(SideLight), "light of surfels"));
     irradiance_.clear(0);
     if (!apart_) return {};
@@ -86,6 +90,12 @@ void LitSurfels::end_light(const Frame& frame) {
             own_[i] = {emission + even * own_[i].front, emission + even * own_[i].back};
         }
     });
+}
+
+void LitSurfels::free_device() {
+    flat_ = {};
+    irradiance_ = {};
+    directions_ = {};
 }
 
 Result<void> LitSurfels::set_light(Frame& frame, const std::vector<LightView>& views, LightGBuffers& gbuffers,

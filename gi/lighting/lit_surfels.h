@@ -38,6 +38,9 @@ class LitSurfels {
     Result<void> begin_light(Frame& frame, Specular specular = Specular::even);
     Result<void> add_light(Frame& frame, const LightView& view, LightGBuffers& gbuffers);
     void end_light(const Frame& frame);
+    /// Frees what is on the device, for who seldom needs other light: the next begin_light() sends the
+    /// surfels again.
+    void free_device();
 
     std::span<const FlatSurfel> surfels() const { return surfels_; }
     /// Of each surfel: its radiance on both sides, W/(sr m^2).

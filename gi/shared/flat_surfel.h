@@ -10,17 +10,15 @@ namespace lucarne::gi {
 
 LUCARNE_STRUCT(FlatSurfel) {
     float x, y, z;  // m, relative to the local origin
-    float radius;   // m, of a whole disc, also where a line ends it; 0: no surfel has this id, or it is not
-                    // drawn
+    float radius;   // m; 0: no surfel has this id, or it is not drawn. Where a line ends the disc, it is that
+                    // of passes that draw it round (cut.glsl)
     float area;     // m^2, its share of the surface
     uint normal;    // octahedral
     uint albedo;    // sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
     uint material;
-    // Room for two edges, 16 bits each: half-planes in the tangent plane that clip the disc. kNoEdges: a
-    // whole disc, as all are today.
-    uint edges;
+    float edge_root;  // the root of its own share, m, with which `normal` and `albedo` hold the line at which
+                      // the disc ends (edge.h); 0: a whole disc
 };
-LUCARNE_CONST uint kNoEdges = 0xffffffffu;
 
 #ifdef __cplusplus
 static_assert(sizeof(FlatSurfel) == 36);

@@ -14,12 +14,14 @@ void main() {
     if (id >= ids) return;
     uint item;
     PackedSurfel surfel;
-    FlatSurfel decoded = FlatSurfel(0.0, 0.0, 0.0, 0.0, 0.0, 0u, 0u, 0u, kNoEdges);
+    FlatSurfel decoded = FlatSurfel(0.0, 0.0, 0.0, 0.0, 0.0, 0u, 0u, 0u, 0.0);
     if (cut_surfel(id, item, surfel)) {
         vec3 position = surfel_position(item, surfel);
+        bool ends = (surfel.d & kSurfelHasEdge) != 0u;
         decoded = FlatSurfel(position.x, position.y, position.z, cut_surfel_round_radius(item, surfel),
                              cut_surfel_area(item, surfel), surfel.c, surfel.d & ~kSurfelHasEdge,
-                             surfel_material(surfel.b), kNoEdges);
+                             surfel_material(surfel.b),
+                             ends ? sqrt(surfel_own_area(surfel.b, cut_item_cube(item).w)) : 0.0);
     }
     flat_surfels[id] = decoded;
 }

@@ -18,7 +18,7 @@ FlatSurfel flat_disc(const Surfel& surfel) {
             .normal = bare ? 0 : encode_octahedral(surfel.normal),
             .albedo = bare ? 0 : kSurfelHasNormal,
             .material = surfel.material,
-            .edges = kNoEdges};
+            .edge_root = 0};
 }
 
 Result<void> flatten(Device& device, const DeviceCut& cut, Buffer& flat) {

@@ -120,10 +120,15 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     return {};
 }
 
-std::vector<Surfel> SurfelPool::download(const DeviceCut& cut, std::vector<uint32_t>* ids) const {
+std::vector<Surfel> SurfelPool::download(const DeviceCut& cut) const {
     std::vector<Surfel> surfels;
-    if (ids) ids->clear();
     surfels.reserve(cut.surfels());
+    each_surfel(cut, [&](uint32_t, const Surfel& surfel) { surfels.push_back(surfel); });
+    return surfels;
+}
+
+void SurfelPool::each_surfel(const DeviceCut& cut,
+                             const std::function<void(uint32_t, const Surfel&)>& visit) const {
     std::vector<PackedSurfel> packed;
     const std::span<const CutBlock> blocks = cut.parts_.blocks;
     for (size_t next = 0; next < blocks.size();) {
@@ -140,12 +145,10 @@ std::vector<Surfel> SurfelPool::download(const DeviceCut& cut, std::vector<uint3
             for (uint32_t i = 0; i < blocks[next].count; ++i) {
                 const Surfel surfel = unpack(cut.parts_.items, item, packed[at + i]);
                 if (item.clip && !cut.parts_.clip.keeps(surfel.position)) continue;
-                surfels.push_back(surfel);
-                if (ids) ids->push_back(static_cast<uint32_t>(next * kBlockSurfels) + i);
+                visit(static_cast<uint32_t>(next * kBlockSurfels) + i, surfel);
             }
         }
     }
-    return surfels;
 }
 
 }  // namespace lucarne::gi

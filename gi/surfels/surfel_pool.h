@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -110,8 +111,10 @@ class SurfelPool {
                           std::span<const octree::Filling> fillings = {}) const;
 
     /// Decodes the cut's surfels with their footprints on the host, by the same rules, in the order of their
-    /// ids without the gaps. Engines that trace rays use them. Sets `ids`, if given, to their ids.
-    std::vector<Surfel> download(const DeviceCut& cut, std::vector<uint32_t>* ids = nullptr) const;
+    /// ids without the gaps. Engines that trace rays use them.
+    std::vector<Surfel> download(const DeviceCut& cut) const;
+    /// Calls visit(id, surfel) for each of them instead, for who keeps them otherwise.
+    void each_surfel(const DeviceCut& cut, const std::function<void(uint32_t, const Surfel&)>& visit) const;
 
  private:
     void upload(const PlacedNode& node, std::span<const PackedSurfel> surfels);

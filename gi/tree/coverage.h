@@ -34,20 +34,22 @@ class Coverage {
         return p;
     }
     /// Adds the points that a disc hides from whoever looks along `normal`, or along the axis if the disc
-    /// has its own `normal`.
-    void add(const glm::vec3& middle, float radius, const glm::vec3& normal) {
+    /// has its own `normal`. `edge`: the line at which the disc ends (gi/shared/edge.h).
+    void add(const glm::vec3& middle, float radius, const glm::vec3& normal, const glm::vec3& edge) {
         const Range columns = range(u_, middle, radius), rows = range(v_, middle, radius);
         // Numbers of their own instead of vectors that are indexed: those would be in memory, not in
         // registers.
         const float normal_u = normal[u_], normal_v = normal[v_], normal_w = normal[w_];
         const float low_u = low_[u_], low_v = low_[v_], cell_u = cell_[u_], cell_v = cell_[v_];
         const float middle_u = middle[u_], middle_v = middle[v_];
+        const float edge_u = edge[u_], edge_v = edge[v_], edge_w = edge[w_];
         for (int j = rows.first; j < rows.last; ++j) {
             const float v = low_v + cell_v * (static_cast<float>(j) + 0.5f) - middle_v;
             for (int i = columns.first; i < columns.last; ++i) {
                 const float u = low_u + cell_u * (static_cast<float>(i) + 0.5f) - middle_u;
                 const float w = -(u * normal_u + v * normal_v) / normal_w;
-                if (u * u + v * v + w * w <= radius * radius) covered_ |= uint64_t{1} << (kSide * j + i);
+                if (u * u + v * v + w * w <= radius * radius && u * edge_u + v * edge_v + w * edge_w <= 1)
+                    covered_ |= uint64_t{1} << (kSide * j + i);
             }
         }
     }

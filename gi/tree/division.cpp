@@ -7,9 +7,11 @@
 #include <glm/common.hpp>
 
 #include "gi/shared/brdf.h"
+#include "gi/shared/edge.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/tree/coverage.h"
+#include "octree/tree/footprint.h"
 
 namespace lucarne::gi {
 namespace {
@@ -81,8 +83,15 @@ std::vector<PlacedSurfel> place_surfels(std::span<const FlatSurfel> surfels) {
         if (!has_disc(s)) continue;
         const glm::vec3 normal = decode_octahedral(s.normal);
         const float area = s.area > 0 && std::isfinite(s.area) ? s.area : kPi * s.radius * s.radius;
+        float radius = s.radius;
+        glm::vec3 edge(0.0f);
+        if (s.edge_root > 0) {
+            // Passes that draw discs round have a smaller one (cut.glsl); this is the one that the line cuts.
+            radius = std::max(radius, octree::surfel_radius(s.edge_root * s.edge_root, 0));
+            edge = edge_of_code(surfel_edge_code(s.normal, s.albedo), normal, s.edge_root);
+        }
         placed.push_back(
-            {{s.x, s.y, s.z}, normal, s.radius, area, static_cast<uint32_t>(i), side_of(normal)});
+            {{s.x, s.y, s.z}, normal, radius, area, edge, static_cast<uint32_t>(i), side_of(normal)});
     }
     std::stable_sort(placed.begin(), placed.end(),
                      [](const PlacedSurfel& a, const PlacedSurfel& b) { return a.side < b.side; });

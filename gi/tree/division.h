@@ -17,6 +17,7 @@ namespace lucarne::gi {
 struct PlacedSurfel {
     glm::vec3 position, normal;
     float radius, area;  ///< m, m^2; the area of its disc if the surfel has none
+    glm::vec3 edge;      ///< the line at which its disc ends (gi/shared/edge.h), 1/m; zero: none
     uint32_t index;      ///< its number
     uint32_t side;       ///< of a cube: the one to which its normal is nearest, 0 to 5
 };

@@ -10,6 +10,7 @@
 #include "gi/shared/disc.h"
 #include "gi/shared/surfel.h"
 #include "gi/tree/coverage.h"
+#include "gi/tree/disc_bounds.h"
 #include "gi/tree/division.h"
 #include "io/core/parallel.h"
 
@@ -79,7 +80,8 @@ struct Summary {
     Box box;                       ///< the bounds of its discs, m
     uint64_t mask = ~uint64_t{0};  ///< WideNode::mask
     bool cloud = false;
-    float fill = 1;  ///< of a cloud, the share of its sphere that its discs hide
+    float fill = 1;        ///< of a cloud, the share of its sphere that its discs hide
+    glm::vec3 edge{0.0f};  ///< of a single disc: the line at which it ends
 };
 
 /// Sets what a surface's discs hide of its box; all of it if there are no holes and no end within `squares`.
@@ -88,11 +90,16 @@ void cover_surface(std::span<const PlacedSurfel> discs, const Box& squares, Summ
     const glm::vec3 margin = (node.thickness + kThinnest * node.bound) * glm::abs(node.axis);
     node.box = {node.box.low - margin, node.box.high + margin};
     Coverage coverage(largest_axis(node.axis), node.box.low, node.box.high, node.middle, node.axis);
+    bool ends = false;
     for (const PlacedSurfel& disc : discs) {
         const glm::vec3 offset = disc.position - node.middle;
-        coverage.add(disc.position - node.axis * glm::dot(offset, node.axis), disc.radius, node.axis);
+        ends |= disc.edge != glm::vec3(0.0f);
+        coverage.add(disc.position - node.axis * glm::dot(offset, node.axis), disc.radius, node.axis,
+                     disc.edge);
     }
+    // Rims count where a line ends a disc beside them: at a corner its neighbours' discs would widen the box.
     const bool whole = coverage.covers([&](const glm::vec3& p) {
+        if (ends) return true;
         return glm::all(glm::greaterThanEqual(p, squares.low - margin)) &&
                glm::all(glm::lessThanEqual(p, squares.high + margin));
     });
@@ -108,7 +115,8 @@ float cloud_fill(std::span<const PlacedSurfel> discs, const Summary& node) {
         normal[w] = 1;
         Coverage coverage(w, node.middle - node.bound, node.middle + node.bound, node.middle, normal);
         for (const PlacedSurfel& disc : discs)
-            if (std::abs(disc.normal[w]) > kEdgeOn) coverage.add(disc.position, disc.radius, disc.normal);
+            if (std::abs(disc.normal[w]) > kEdgeOn)
+                coverage.add(disc.position, disc.radius, disc.normal, disc.edge);
         sum +=
             coverage.share([&](const glm::vec3& p) { return glm::distance(p, node.middle) <= node.bound; });
     }
@@ -125,11 +133,11 @@ Summary summary_of(std::span<const PlacedSurfel> discs) {
         middle += glm::dvec3(disc.area * disc.position);
         area += disc.area;
         moments.add(disc.normal, disc.area);
-        const glm::vec3 reach =
-            disc.radius * glm::sqrt(glm::max(glm::vec3(0.0f), 1.0f - disc.normal * disc.normal));
-        sum.box.add({disc.position - reach, disc.position + reach});
-        const glm::vec3 half = reach * std::min(1.0f, 0.5f * std::sqrt(disc.area) / disc.radius);
-        squares.add({disc.position - half, disc.position + half});
+        const DiscBounds reach = disc_bounds(disc.normal, disc.radius, disc.edge);
+        sum.box.add({disc.position + reach.low, disc.position + reach.high});
+        const DiscBounds half =
+            disc_bounds(disc.normal, std::min(disc.radius, 0.5f * std::sqrt(disc.area)), disc.edge);
+        squares.add({disc.position + half.low, disc.position + half.high});
     }
     sum.area = static_cast<float>(area);
     sum.middle = glm::vec3(middle / area);
@@ -141,7 +149,10 @@ Summary summary_of(std::span<const PlacedSurfel> discs) {
                                                     disc_reach(disc.radius, glm::dot(disc.normal, sum.axis)));
     }
     sum.cloud = sum.thickness > kThickCloud * sum.bound && moments.agreement() < kOneSurface;
-    if (discs.size() == 1) return sum;
+    if (discs.size() == 1) {
+        sum.edge = discs.front().edge;
+        return sum;
+    }
     if (sum.cloud)
         sum.fill = cloud_fill(discs, sum);
     else
@@ -155,7 +166,7 @@ void set_child(WideNode& node, size_t k, const Summary& s, bool leaf) {
     node.bound[k] = s.bound, node.thickness[k] = s.thickness;
     node.mask_low[k] = static_cast<uint32_t>(s.mask);
     node.mask_high[k] = static_cast<uint32_t>(s.mask >> 32);
-    glm::vec3 low(-kFarAway), high(kFarAway);
+    glm::vec3 low = s.edge, high(kFarAway);
     if (s.cloud && !leaf) {
         low.x = s.fill;
         high.x = kCloud;
@@ -236,8 +247,8 @@ Facing facing(const SurfelTree& tree, size_t parent, size_t child) {
     return {weight * (1 + outward), weight * (1 - outward), cosine >= 0};
 }
 
-void pull_light(const SurfelTree& tree, std::span<const SideLight> light, std::vector<SideLight>& slots) {
-    slots.assign(8 * tree.nodes.size(), {});
+std::vector<SideLight> pull_light(const SurfelTree& tree, std::span<const SideLight> light) {
+    std::vector<SideLight> slots(8 * tree.nodes.size());
     for_each_upward(tree, [&](size_t at) {
         const WideNode& node = tree.nodes[at];
         for (size_t k = 0; k < 8; ++k) {
@@ -258,6 +269,7 @@ void pull_light(const SurfelTree& tree, std::span<const SideLight> light, std::v
             slots[slot] = sum;
         }
     });
+    return slots;
 }
 
 }  // namespace lucarne::gi

@@ -84,6 +84,6 @@ Facing facing(const SurfelTree& tree, size_t parent, size_t child);
 /// Computes the light of every slot from that of the surfels (`light`, by surfel). A node's side shines with
 /// the mean of its surfels' light, weighted by area and by how much they face that side. See
 /// facing().
-void pull_light(const SurfelTree& tree, std::span<const SideLight> light, std::vector<SideLight>& slots);
+std::vector<SideLight> pull_light(const SurfelTree& tree, std::span<const SideLight> light);
 
 }  // namespace lucarne::gi

@@ -25,7 +25,8 @@ LUCARNE_STRUCT(WideNode) {
     float bound[8];             // radius of the sphere about the middle that holds all discs of the child, m
     float nx[8], ny[8], nz[8];  // unit axis: a surfel's normal, or the direction that most normals share
     float thickness[8];         // no disc is farther from the plane through the middle, m
-    // The box, from the middle, m. Of a cloud low_x is its probability, and high_x is kCloud.
+    // The box, from the middle, m. Of a cloud low_x is its probability, and high_x is kCloud. Of a surfel low
+    // is the line at which its disc ends (gi/shared/edge.h), 1/m.
     float low_x[8], low_y[8], low_z[8], high_x[8], high_y[8], high_z[8];
     // Bit 8 j + i is the part i along the axis after that along which the node's own axis is longest (after z
     // comes x), and j along the next.

@@ -43,7 +43,7 @@ Result<void> EntryLight::set_entries(Frame& frame, const std::shared_ptr<const P
     for (const Entry& entry : bake->entries) {
         const glm::vec3 at = entry.position + frame.bake_offset;
         flat.push_back({at.x, at.y, at.z, entry.radius, 0, encode_octahedral(entry.normal), kSurfelHasNormal,
-                        entry.material, kNoEdges});
+                        entry.material, 0});
     }
     if (count > 0) {
         Device& device = frame.gl.device;

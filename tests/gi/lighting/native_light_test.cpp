@@ -162,7 +162,7 @@ class NativeLight : public OnDevice {
             const bool small = flat.size() % 2 != 0;
             flat.push_back({surfel.position.x, surfel.position.y, surfel.position.z,
                             plain || small ? surfel.radius : 0, surfel.area, encode_octahedral(surfel.normal),
-                            plain || !small ? kSurfelHasNormal : 0, surfel.material, kNoEdges});
+                            plain || !small ? kSurfelHasNormal : 0, surfel.material, 0});
         }
         Buffer held = *device->buffer(count * sizeof(FlatSurfel), "surfels");
         held.upload_all(flat);

@@ -21,7 +21,7 @@ FlatSurfel bare(const glm::vec3& at, float radius) {
             .normal = 0,
             .albedo = 0x3fffffffu,
             .material = 0,
-            .edges = kNoEdges};
+            .edge_root = 0};
 }
 
 TEST(PlaneNormals, AreThoseOfTheWallsOfARoom) {

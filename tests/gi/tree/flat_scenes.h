@@ -24,7 +24,7 @@ inline FlatSurfel of(const Surfel& s) {
             encode_octahedral(s.normal),
             encode_albedo(s.albedo) | kSurfelHasNormal,
             s.material,
-            kNoEdges};
+            0};
 }
 inline std::vector<FlatSurfel> of(const std::vector<Surfel>& surfels) {
     std::vector<FlatSurfel> result;

@@ -91,9 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Trees, testing::Values(1, 2, 7, 8, 9, 100, 5000)
 
 TEST(SurfelTree, OfNothingIsEmpty) {
     EXPECT_TRUE(build_tree({}).empty());
-    std::vector<SideLight> slots{SideLight{}};
-    pull_light(build_tree({}), {}, slots);
-    EXPECT_TRUE(slots.empty());
+    EXPECT_TRUE(pull_light(build_tree({}), {}).empty());
 }
 
 TEST(SurfelTree, LeavesOutWhatHasNoDisc) {
@@ -116,8 +114,7 @@ TEST(SurfelTree, DividesSurfelsAtOnePlaceEvenly) {
 TEST(SurfelTree, PullsTheMeanOfEvenLight) {
     const auto room = flat::noisy_room(3000);
     const SurfelTree tree = build_tree(room);
-    std::vector<SideLight> slots;
-    pull_light(tree, std::vector<SideLight>(room.size(), {glm::vec3(2), glm::vec3(2)}), slots);
+    const auto slots = pull_light(tree, std::vector<SideLight>(room.size(), {glm::vec3(2), glm::vec3(2)}));
     for_each_slot(tree, [&](size_t slot) {
         EXPECT_NEAR(slots[slot].front.x, 2, 1e-4);
         EXPECT_NEAR(slots[slot].back.x, 2, 1e-4);
@@ -137,8 +134,7 @@ TEST(SurfelTree, NodeOfTwoSheetsShinesWithTheOuterSides) {
             light.push_back({glm::vec3(sheet ? 3 : 1), glm::vec3(0)});
         }
     const SurfelTree tree = build_tree(wall);
-    std::vector<SideLight> slots;
-    pull_light(tree, light, slots);
+    const auto slots = pull_light(tree, light);
     for_each_slot(tree, [&](size_t slot) {
         const auto below = surfels_below(tree, slot);
         const auto upper = std::ranges::count_if(below, [&](uint32_t s) { return wall[s].z > 0; });

@@ -75,7 +75,7 @@ TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
     ASSERT_TRUE(areas.download(0, std::as_writable_bytes(std::span(sums))));
 
     const auto on_host = flat.download_all<FlatSurfel>(count);
-    EXPECT_TRUE(std::ranges::all_of(on_host, [](const FlatSurfel& s) { return s.edges == kNoEdges; }));
+    EXPECT_TRUE(std::ranges::all_of(on_host, [](const FlatSurfel& s) { return s.edge_root == 0; }));
     double all = 0;
     for (uint32_t part = 0; part < parts; ++part) {
         float expected = 0;

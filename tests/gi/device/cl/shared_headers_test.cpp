@@ -78,7 +78,7 @@ TEST_F(SharedHeadersInOpenCl, StructsHaveTheSameLayoutAsOnTheHost) {
     LUCARNE_COMPARE(CutBlock, lod);
     LUCARNE_COMPARE(CutItem, size);
     LUCARNE_COMPARE(CutItem, child);
-    LUCARNE_COMPARE(FlatSurfel, edges);
+    LUCARNE_COMPARE(FlatSurfel, edge_root);
     LUCARNE_COMPARE(GBufferTexel, material);
     LUCARNE_COMPARE(Light, extent);
     LUCARNE_COMPARE(Light, kind);
