@@ -72,15 +72,16 @@ ArrivingLight::ArrivingLight(std::shared_ptr<const PathsBake> bake) : bake_(std:
     cell_of_.resize(paths.points.size() * paths.rays_a_point);
     rays_in_.resize(paths.points.size() * kCells);
     parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
+        for (size_t i = begin; i < end; ++i) {
+            const GatheringPoint& point = paths.points[i];
+            const CosineDirections directions(point.normal, bake_->seed, point.side);
             for (uint32_t ray = 0; ray < paths.rays_a_point; ++ray) {
-                const GatheringPoint& point = paths.points[i];
-                const uint32_t cell =
-                    cell_of(cosine_direction(point.normal, even_point(ray, bake_->seed, point.side)));
+                const uint32_t cell = cell_of(directions[ray]);
                 cell_of_[i * paths.rays_a_point + ray] = static_cast<uint8_t>(cell);
                 uint8_t& rays = rays_in_[i * kCells + cell];
                 rays += rays < 255;
             }
+        }
     });
 }
 

@@ -32,6 +32,18 @@ glm::vec3 cosine_direction(const glm::vec3& normal, const glm::dvec2& square);
 /// Returns point `i` of `count` that are even in the unit square, in any order, shifted by (seed, stream).
 glm::dvec2 even_point(uint32_t i, uint64_t seed, uint64_t stream);
 
+/// Directions of a hemisphere that are even by the cosine: cosine_direction() of even_point(), with what all
+/// have in common.
+class CosineDirections {
+ public:
+    CosineDirections(const glm::vec3& normal, uint64_t seed, uint64_t stream);
+    glm::vec3 operator[](uint32_t i) const;
+
+ private:
+    glm::vec3 normal_, tangent_{0.0f}, bitangent_{0.0f};
+    glm::dvec2 shift_;
+};
+
 /// Follows one of `count` rays of a point. Their directions have the density cos / pi, so each stands for a
 /// solid angle of pi / (count cos); the width of its cross section is the root of that times the distance
 /// (Igehy 1999, "Tracing ray differentials", for rays from one point). Sets `distance`, m; infinite if it

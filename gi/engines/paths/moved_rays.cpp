@@ -9,6 +9,7 @@
 #include "gi/engines/paths/cosine_rays.h"
 #include "gi/shared/luminance.h"
 #include "gi/tracing/light_sampling.h"
+#include "io/core/parallel.h"
 
 namespace lucarne::gi::paths {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 /// Rays that leave the scene meet something so many m away.
 constexpr float kFar = 1e4f;
 constexpr float kGrazing = 0.05f;
-/// A ray counts at most so many times as much as at its point: what is near has been met by few.
-constexpr float kMostTimes = 20;
 /// Places at which all rays of a point count less than this in the mean are behind what they met.
 constexpr float kLeastMean = 0.05f;
 
@@ -33,6 +32,7 @@ float light_there(float sum, float times, float here) {
 }
 /// Rays that are kept, of 32 bytes each: 64 MB.
 constexpr size_t kMostRays = size_t{1} << 21;
+constexpr size_t kPointsATask = 256;
 
 }  // namespace
 
@@ -44,76 +44,91 @@ void MovedRays::set(std::span<const glm::vec3> radiosity) {
     light_.reserve(radiosity.size() + 1);
     for (const glm::vec3& light : radiosity) light_.push_back(luminance(light));
     light_.push_back(0);
+    parallel_ranges(bake_->paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            if (!kept_[i].rays.blocks.empty()) set_light(static_cast<uint32_t>(i), kept_[i].rays);
+    });
+}
+
+/// Returns the groups that the rays of a point name.
+std::span<const uint32_t> MovedRays::groups_of(uint32_t point) const {
+    const LightPaths& paths = bake_->paths;
+    return std::span(paths.rays).subspan(size_t{point} * paths.rays_a_point, paths.rays_a_point);
 }
 
 /// Finds what the rays of a point met, by the planes of the groups that they name.
-std::vector<MovedRays::Ray> MovedRays::make_rays(const GatheringPoint& point,
-                                                 std::span<const uint32_t> groups) const {
-    const Groups& all = bake_->paths.groups;
-    const glm::vec3 start = tracing::offset_origin(point.position, point.normal, point.radius);
-    std::vector<Ray> rays(groups.size());
-    for (uint32_t i = 0; i < rays.size(); ++i) {
-        const glm::vec3 direction = cosine_direction(point.normal, even_point(i, bake_->seed, point.side));
-        const uint32_t group = groups[i];
+void MovedRays::make(uint32_t point, Rays& rays) const {
+    constexpr size_t kLanes = native::RayBlock::kRays;
+    const GatheringPoint& from = bake_->paths.points[point];
+    const std::span<const uint32_t> groups = groups_of(point);
+    const std::vector<float>& cells = bake_->paths.groups.cell;
+    const glm::vec3 start = tracing::offset_origin(from.position, from.normal, from.radius);
+    const CosineDirections directions(from.normal, bake_->seed, from.side);
+    rays.blocks.assign((groups.size() + kLanes - 1) / kLanes, {});
+    for (uint32_t i = 0; i < groups.size(); ++i) {
+        const glm::vec3 direction = directions[i];
         float distance = kFar;
         glm::vec3 normal = -direction;
-        if (group != kNone) {
+        if (const uint32_t group = groups[i]; group != kNone) {
             const GroupPlane& plane = bake_->planes[group];
             const float cosine = -glm::dot(direction, plane.normal);
             const float to_middle = glm::dot(plane.centre - start, direction);
             distance = cosine > kGrazing ? glm::dot(start - plane.centre, plane.normal) / cosine : to_middle;
-            distance = std::max(
-                std::clamp(distance, to_middle - all.cell[group], to_middle + all.cell[group]), point.radius);
+            distance = std::max(std::clamp(distance, to_middle - cells[group], to_middle + cells[group]),
+                                from.radius);
             normal = plane.normal;
         }
-        const float from = std::max(glm::dot(direction, point.normal), kGrazing),
-                    to = std::max(-glm::dot(direction, normal), kGrazing);
-        rays[i] = {start + direction * distance,
-                   (distance * distance + point.radius * point.radius) / (from * to), normal,
-                   std::min(group, all.count())};
+        const float leaving = std::max(glm::dot(direction, from.normal), kGrazing),
+                    arriving = std::max(-glm::dot(direction, normal), kGrazing);
+        const glm::vec3 place = start + direction * distance;
+        native::RayBlock& block = rays.blocks[i / kLanes];
+        const size_t lane = i % kLanes;
+        block.x[lane] = place.x;
+        block.y[lane] = place.y;
+        block.z[lane] = place.z;
+        block.normal_x[lane] = normal.x;
+        block.normal_y[lane] = normal.y;
+        block.normal_z[lane] = normal.z;
+        block.weight[lane] = (distance * distance + from.radius * from.radius) / (leaving * arriving);
     }
-    return rays;
+    set_light(point, rays);
 }
 
-std::span<const MovedRays::Ray> MovedRays::rays_of(uint32_t point, std::vector<Ray>& own) const {
-    const LightPaths& paths = bake_->paths;
-    const auto make = [&] {
-        return make_rays(
-            paths.points[point],
-            std::span(paths.rays).subspan(size_t{point} * paths.rays_a_point, paths.rays_a_point));
-    };
-    std::call_once(kept_[point].once, [&] {
-        if (count_.fetch_add(paths.rays_a_point) < kMostRays) kept_[point].rays = make();
+void MovedRays::set_light(uint32_t point, Rays& rays) const {
+    constexpr size_t kLanes = native::RayBlock::kRays;
+    const std::span<const uint32_t> groups = groups_of(point);
+    const auto dark = static_cast<uint32_t>(light_.size() - 1);
+    float sum = 0;
+    for (size_t i = 0; i < groups.size(); ++i) {
+        const float light = light_[std::min(groups[i], dark)];
+        rays.blocks[i / kLanes].light[i % kLanes] = light;
+        sum += light;
+    }
+    rays.light = sum / static_cast<float>(groups.size());
+}
+
+const MovedRays::Rays& MovedRays::rays_of(uint32_t point, Rays& own) const {
+    Kept& kept = kept_[point];
+    std::call_once(kept.once, [&] {
+        if (count_.fetch_add(bake_->paths.rays_a_point) < kMostRays) make(point, kept.rays);
     });
-    if (!kept_[point].rays.empty()) return kept_[point].rays;
-    own = make();
+    if (!kept.rays.blocks.empty()) return kept.rays;
+    make(point, own);
     return own;
 }
 
 float MovedRays::factor(const SurfacePoint& place, const glm::vec3& offset,
                         std::span<const PointShare> about) const {
     const glm::vec3 at = tracing::offset_origin(place.position, place.normal, place.radius) - offset;
+    const auto count = static_cast<float>(bake_->paths.rays_a_point);
     float there = 0, here = 0;
-    std::vector<Ray> own;
+    Rays own;
     for (const PointShare& share : about) {
-        const float radius2 = std::pow(bake_->paths.points[share.point].radius, 2.0f);
-        float sum = 0, times = 0, unmoved = 0;
-        const std::span<const Ray> rays = rays_of(share.point, own);
-        for (const Ray& ray : rays) {
-            const glm::vec3 away = ray.place - at;
-            const float distance2 = glm::dot(away, away);
-            const float cosines =
-                std::max(glm::dot(away, place.normal), 0.0f) * std::max(-glm::dot(away, ray.normal), 0.0f);
-            const float time = std::min(
-                ray.weight * cosines / std::max(distance2 * (distance2 + radius2), 1e-12f), kMostTimes);
-            const float light = light_[ray.group];
-            sum += time * light;
-            times += time;
-            unmoved += light;
-        }
-        const auto count = static_cast<float>(rays.size());
-        here += share.share * unmoved / count;
-        there += share.share * light_there(sum / count, times / count, unmoved / count);
+        const float radius = bake_->paths.points[share.point].radius;
+        const Rays& rays = rays_of(share.point, own);
+        const native::RaySums sums = native::add_moved(rays.blocks, at, place.normal, radius * radius);
+        here += share.share * rays.light;
+        there += share.share * light_there(sums.light / count, sums.times / count, rays.light);
     }
     const float times = there / here;  // of a damaged bake file perhaps no number
     return here > 0 && std::isfinite(times) ? times : 1;

@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/engines/paths/bake.h"
+#include "gi/engines/paths/native/moved_light.h"
 #include "gi/host_frame.h"
 
 namespace lucarne::gi::paths {
@@ -30,22 +31,22 @@ class MovedRays {
     float factor(const SurfacePoint& place, const glm::vec3& offset, std::span<const PointShare> about) const;
 
  private:
-    /// A ray of a point.
-    struct Ray {
-        glm::vec3 place{0.0f};  ///< that it meets
-        float weight = 0;       ///< 1 / what it counts at the point
-        glm::vec3 normal{0.0f};
-        uint32_t group = 0;  ///< as an index of light_
+    /// The rays of a point, and their light.
+    struct Rays {
+        std::vector<native::RayBlock> blocks;
+        float light = 0;  ///< mean luminance of the radiosities that they meet, W/m^2
     };
-    std::vector<Ray> make_rays(const GatheringPoint& point, std::span<const uint32_t> groups) const;
-    std::span<const Ray> rays_of(uint32_t point, std::vector<Ray>& own) const;
+    std::span<const uint32_t> groups_of(uint32_t point) const;
+    void make(uint32_t point, Rays& rays) const;
+    void set_light(uint32_t point, Rays& rays) const;
+    const Rays& rays_of(uint32_t point, Rays& own) const;
 
     std::shared_ptr<const PathsBake> bake_;
     std::vector<float> light_;  ///< luminance of the radiosity of each group; then darkness
     /// The rays of points that pictures have shown, made when they are first asked for.
     struct Kept {
         std::once_flag once;
-        std::vector<Ray> rays;
+        Rays rays;
     };
     mutable std::unique_ptr<Kept[]> kept_;
     mutable std::atomic<size_t> count_ = 0;

@@ -31,11 +31,11 @@ PointSky::PointSky(std::shared_ptr<const PathsBake> bake) : bake_(std::move(bake
     parallel_ranges(paths.points.size(), kSkiesATask, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const GatheringPoint& point = paths.points[i];
+            const CosineDirections directions(point.normal, bake_->seed, point.side);
             uint32_t next = first_[i];
             for (uint32_t ray = 0; ray < paths.rays_a_point && next < first_[i + 1]; ++ray)
                 if (rays_of(i)[ray] == kNone) {
-                    const glm::vec3 direction =
-                        cosine_direction(point.normal, even_point(ray, bake_->seed, point.side));
+                    const glm::vec3 direction = directions[ray];
                     cells_[next] = static_cast<uint16_t>(sky_cell(direction));
                     open_[next++] = encode_octahedral(direction);
                 }

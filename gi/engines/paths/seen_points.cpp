@@ -18,6 +18,14 @@ constexpr float kTriedTurn = 1.0f;
 
 }  // namespace
 
+SeenPoints::SeenPoints(const tracing::SurfelTracer& tracer, const PathsBake& bake, const glm::vec3& offset,
+                       std::span<const glm::vec3> irradiance)
+    : tracer_(tracer), bake_(bake), offset_(offset), irradiance_(irradiance) {
+    facing_.reserve(bake.paths.points.size());
+    for (const GatheringPoint& point : bake.paths.points)
+        facing_.push_back({point.position, 1 / (point.reach * point.reach), point.normal});
+}
+
 bool SeenPoints::disagree(std::span<const PointShare> about) const {
     float least = std::numeric_limits<float>::infinity(), most = 0;
     for (const PointShare& share : about) {
@@ -36,16 +44,32 @@ bool SeenPoints::sees(const glm::vec3& start, const GatheringPoint& point) const
 void SeenPoints::find_nearest(const SurfacePoint& place, const glm::vec3& start,
                               std::vector<PointShare>& seen) const {
     const glm::vec3 position = place.position - offset_;
+    // The nearest ones so far; the farthest of them is the first.
     std::vector<std::pair<float, uint32_t>> tried;
+    tried.reserve(kMostTried);
     bake_.far.visit(position, [&](uint32_t i) {
-        const GatheringPoint& point = bake_.paths.points[i];
-        if (glm::dot(place.normal, point.normal) > 0)
-            tried.emplace_back(squared_error_of(point, point.reach, kTriedTurn, position, place.normal), i);
+        const Facing& point = facing_[i];
+        const float cosine = glm::dot(place.normal, point.normal);
+        if (!(cosine > 0)) return;
+        const glm::vec3 away = position - point.position;
+        const float across = glm::dot(away, point.normal);
+        const float distance2 = glm::dot(away, away) + (kAcross * kAcross - 1) * across * across;
+        const std::pair error(
+            std::max(distance2 * point.per_reach2, (1 - cosine) / (kTriedTurn * kTriedTurn)), i);
+        if (tried.size() == kMostTried) {
+            if (!(error < tried.front())) return;
+            std::ranges::pop_heap(tried);
+            tried.pop_back();
+        }
+        tried.push_back(error);
+        std::ranges::push_heap(tried);
     });
-    const size_t count = std::min(tried.size(), kMostTried);
-    std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(count), tried.end());
-    for (size_t i = 0; i < count && seen.empty(); ++i)
-        if (sees(start, bake_.paths.points[tried[i].second])) seen.push_back({tried[i].second, 1.0f});
+    std::ranges::sort_heap(tried);
+    for (const auto& [error, i] : tried) {
+        if (!sees(start, bake_.paths.points[i])) continue;
+        seen.assign(1, {i, 1.0f});
+        return;
+    }
 }
 
 std::span<const PointShare> SeenPoints::about(const SurfacePoint& place, std::span<const PointShare> about,

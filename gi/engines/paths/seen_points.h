@@ -18,8 +18,7 @@ class SeenPoints {
     /// `offset`: of the bake's coordinates in those of the tracer; `irradiance`: of the points, W/m^2. The
     /// references must outlive it.
     SeenPoints(const tracing::SurfelTracer& tracer, const PathsBake& bake, const glm::vec3& offset,
-               std::span<const glm::vec3> irradiance)
-        : tracer_(tracer), bake_(bake), offset_(offset), irradiance_(irradiance) {}
+               std::span<const glm::vec3> irradiance);
 
     /// Returns those of the points about a place that it sees; all if they have about the same light and it
     /// sees the one with the largest share, which takes fewer rays. If it sees none, the nearest one of all
@@ -32,10 +31,19 @@ class SeenPoints {
     bool sees(const glm::vec3& start, const GatheringPoint& point) const;
     void find_nearest(const SurfacePoint& place, const glm::vec3& start, std::vector<PointShare>& seen) const;
 
+    /// What squared_error_of() reads of a point, side by side: places that see none of their points ask for
+    /// the errors of thousands.
+    struct Facing {
+        glm::vec3 position{0.0f};
+        float per_reach2 = 0;  ///< 1 / m^2
+        glm::vec3 normal{0.0f};
+        float unused = 0;
+    };
     const tracing::SurfelTracer& tracer_;
     const PathsBake& bake_;
     glm::vec3 offset_;
     std::span<const glm::vec3> irradiance_;
+    std::vector<Facing> facing_;  ///< of each point
 };
 
 }  // namespace lucarne::gi::paths

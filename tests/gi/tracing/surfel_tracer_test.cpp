@@ -1,8 +1,12 @@
 #include "gi/tracing/surfel_tracer.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+
+#include "gi/tracing/light_sampling.h"
 
 namespace lucarne::gi::tracing {
 namespace {
@@ -52,6 +56,34 @@ TEST(SurfelTracer, FirstHitsHaveADistanceAndASide) {
     EXPECT_FALSE(above->back);
     EXPECT_NEAR(above->distance, 1, 1e-5);
     EXPECT_FALSE((*made)->first_hit({0, 0, 1}, {0, 0, 1}));
+}
+
+TEST(SurfelTracer, DiscsEndAtTheirRims) {
+    for (const glm::vec3& facing : {glm::vec3(0, 0, 1), {0, 0, -1}, {1, 0, 0}, {.3f, -.8f, .5f}}) {
+        Surfel disc = disc_until(0);
+        disc.position = {7, -2, 3};
+        disc.normal = glm::normalize(facing);
+        disc.radius = .25f;
+        const auto made = SurfelTracer::create({disc});
+        ASSERT_TRUE(made);
+        glm::vec3 u, v;
+        frame_of(disc.normal, u, v);
+        for (int i = 0; i < 24; ++i) {
+            const float angle = static_cast<float>(i) * static_cast<float>(M_PI / 12);
+            const glm::vec3 outward = disc.radius * (std::cos(angle) * u + std::sin(angle) * v);
+            for (const glm::vec3& along : {disc.normal, -disc.normal}) {
+                const glm::vec3 inside = disc.position + .999f * outward,
+                                outside = disc.position + 1.001f * outward;
+                const auto hit = (*made)->first_hit(inside - along, along);
+                ASSERT_TRUE(hit) << "at " << i;
+                EXPECT_NEAR(hit->distance, 1, 1e-5);
+                EXPECT_EQ(hit->back, glm::dot(along, disc.normal) > 0);
+                EXPECT_TRUE((*made)->occluded(inside - along, inside + along));
+                EXPECT_FALSE((*made)->occluded(outside - along, outside + along)) << "at " << i;
+                EXPECT_FALSE((*made)->first_hit(outside - along, along));
+            }
+        }
+    }
 }
 
 TEST(SurfelTracer, LinesOfDiscsThatWereLeftOutDoNotMoveTheOthers) {
