@@ -227,7 +227,7 @@ constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info,
 
 const Precomputes kPathsPrecomputes{
     .make = []() -> std::unique_ptr<Precomputation> { return std::make_unique<PathsPrecomputation>(); },
-    .version = 8,
+    .version = 9,
     .options = kOfBake,
     .cost = &cost_of};
 

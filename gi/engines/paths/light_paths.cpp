@@ -24,6 +24,9 @@ constexpr size_t kOriginsAtOnce = 2048, kOriginsAPiece = 16, kPathsAPiece = 1024
                  kLeavesAtOnce = 65536;
 /// Places that are tried for each entry point, and in how many steps they are ordered along a curve.
 constexpr size_t kTried = 8;
+/// Groups with at least this share of the area of the cells from which links start have all links, those with
+/// a quarter of that half of them, and so on.
+constexpr float kWholeArea = 0.25f;
 constexpr float kCurve = 1023;
 
 /// Returns which of these sides lies at a share 0..1 of the area of all, in their order.
@@ -264,46 +267,53 @@ double LinkBuilder::share() const {
     return origins_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(origins_.size());
 }
 
-bool LinkBuilder::advance() {
-    const size_t first = next_, last = std::min(origins_.size(), first + kOriginsAtOnce);
-    links_.groups.resize(last * kLinks, kNone);
-    std::vector<uint32_t> directions((last - first) * kLinks);
-    parallel_ranges(last - first, kOriginsAPiece, [&](size_t begin, size_t end) {
-        for (size_t i = first + begin; i < first + end; ++i) {
-            const uint32_t origin = origins_[i];
-            const std::vector<Side> sides = sides_of(origin);
-            const ByArea starts(surfaces_, sides);
-            const double shift = Random(seed_, origin).uniform();
-            for (uint32_t link = 0; link < kLinks; ++link) {
-                // Places and directions are both even; a stride that is prime to kLinks makes them
-                // independent.
-                const Side side = starts.at(((link * 29) % kLinks + shift) / kLinks);
-                const RayStart start = start_at(surfaces_.surfels(), side);
-                const glm::dvec2 at = even_point(link, seed_, origin);
-                float distance = 0;
-                const glm::vec3 direction = cosine_direction(start.normal, at);
-                directions[(i - first) * kLinks + link] = encode_octahedral(direction);
-                const RayHit hit = follow(surfaces_, start, direction, kLinks, distance);
-                if (hit.side != kNone)
-                    links_.groups[i * kLinks + link] = groups_.fitting(groups_.leaf_of[hit.side], hit.width);
-            }
-        }
-    });
-    next_ = last;
-    for (size_t origin = first; origin < last; ++origin) {
-        for (size_t i = origin * kLinks; i < (origin + 1) * kLinks; ++i) {
-            if (links_.groups[i] != kNone)
-                ask(links_.groups[i]);
-            else
-                links_.open.push_back(directions[i - first * kLinks]);
-        }
-        links_.first_open.push_back(static_cast<uint32_t>(links_.open.size()));
+/// Returns how many links start from a group. Every second leaf is a sliver that a cell cuts off from a
+/// surface: it sends little light, and the noise of its own counts as little.
+uint32_t LinkBuilder::count_of(uint32_t group) const {
+    const float share = groups_.area[group] / (reach_ * reach_);
+    uint32_t count = kLinks;
+    for (float least = kWholeArea; count > kFewestLinks && share < least; least /= 4) count /= 2;
+    return count;
+}
+
+LinkBuilder::Met LinkBuilder::trace(uint32_t group) const {
+    const std::vector<Side> sides = sides_of(group);
+    const ByArea starts(surfaces_, sides);
+    const double shift = Random(seed_, group).uniform();
+    const uint32_t count = count_of(group);
+    Met met;
+    for (uint32_t link = 0; link < count; ++link) {
+        // Places and directions are both even; a stride that is prime to their number makes them independent.
+        const Side side = starts.at(((link * 29) % count + shift) / count);
+        const RayStart start = start_at(surfaces_.surfels(), side);
+        const glm::vec3 direction = cosine_direction(start.normal, even_point(link, seed_, group));
+        float distance = 0;
+        // Few links name groups as small as many: the means of larger ones bring light from farther away.
+        const RayHit hit = follow(surfaces_, start, direction, kLinks, distance);
+        if (hit.side != kNone)
+            met.groups.push_back(groups_.fitting(groups_.leaf_of[hit.side], hit.width));
+        else
+            met.open.push_back(encode_octahedral(direction));
     }
     // Only their sum counts, and sorted numbers take less room in a file.
-    parallel_ranges(last - first, kOriginsAPiece, [&](size_t begin, size_t end) {
-        for (size_t i = first + begin; i < first + end; ++i)
-            std::ranges::sort(std::span(links_.groups).subspan(i * kLinks, kLinks));
+    std::ranges::sort(met.groups);
+    return met;
+}
+
+bool LinkBuilder::advance() {
+    const size_t first = next_, last = std::min(origins_.size(), first + kOriginsAtOnce);
+    std::vector<Met> met(last - first);
+    parallel_ranges(met.size(), kOriginsAPiece, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) met[i] = trace(origins_[first + i]);
     });
+    next_ = last;
+    for (const Met& one : met) {
+        for (const uint32_t group : one.groups) ask(group);
+        links_.groups.insert(links_.groups.end(), one.groups.begin(), one.groups.end());
+        links_.first.push_back(static_cast<uint32_t>(links_.groups.size()));
+        links_.open.insert(links_.open.end(), one.open.begin(), one.open.end());
+        links_.first_open.push_back(static_cast<uint32_t>(links_.open.size()));
+    }
     return next_ < origins_.size();
 }
 

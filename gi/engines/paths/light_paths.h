@@ -57,15 +57,28 @@ class EntryChooser {
     EntryPoints entries_;
 };
 
-/// Rays of a place that tell how the light of others reaches it.
-inline constexpr uint32_t kLinks = 64;
-/// Which light arrives at each leaf: its surface's, by kLinks rays from all over a group that holds it.
+/// Rays of a place that tell how the light of others reaches it: at most so many, and at least.
+inline constexpr uint32_t kLinks = 64, kFewestLinks = 16;
+/// Which light arrives at each leaf: its surface's, by rays from all over a group that holds it.
 struct Links {
     std::vector<uint32_t> origin_of;  ///< of each leaf: the number of that group among all; kNone: none
-    std::vector<uint32_t> groups;     ///< of each of these: what its rays meet; kNone: nothing
-    /// Rays that leave the scene, and so see the sky: where those of each group begin, and their directions
-    /// as octahedral codes.
+    /// Of each of these groups: where what its rays meet begins, and the end of the last one; and all that.
+    std::vector<uint32_t> first{0}, groups;
+    /// Rays that leave the scene, and so see the sky: likewise, and their directions as octahedral codes.
     std::vector<uint32_t> first_open{0}, open;
+
+    size_t origins() const { return first.size() - 1; }
+    std::span<const uint32_t> groups_of(size_t origin) const {
+        return std::span(groups).subspan(first[origin], first[origin + 1] - first[origin]);
+    }
+    std::span<const uint32_t> open_of(size_t origin) const {
+        return std::span(open).subspan(first_open[origin], first_open[origin + 1] - first_open[origin]);
+    }
+    /// The share of the light of all rays that one of them brings.
+    float share_of_one(size_t origin) const {
+        const size_t count = groups_of(origin).size() + open_of(origin).size();
+        return count > 0 ? 1 / static_cast<float>(count) : 0;
+    }
     bool operator==(const Links&) const = default;
 };
 
@@ -88,7 +101,13 @@ class LinkBuilder {
     Links take() { return std::move(links_); }
 
  private:
+    /// What the links of one group meet.
+    struct Met {
+        std::vector<uint32_t> groups, open;
+    };
     std::vector<Side> sides_of(uint32_t group) const;
+    uint32_t count_of(uint32_t group) const;
+    Met trace(uint32_t group) const;
 
     const Surfaces& surfaces_;
     const GroupBuilder& builder_;

@@ -52,6 +52,9 @@ constexpr EngineInfo kInfo{.name = "paths",
                            .needs = {.light_cut = true, .light_views = true},
                            .precomputes = &kPathsPrecomputes};
 
+/// At rest, pixels between fewer of the places that gather than this gather themselves.
+constexpr float kLeastBetween = 0.9f;
+
 class PathsEngine final : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
@@ -298,8 +301,8 @@ void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> mate
                      light_at(frame, places[i], about, moved)};
     });
     const gi::native::DiffuseTables reflectances(materials);
-    const std::vector<uint32_t> rest =
-        native::add_grid_light({frame.camera, texels, grid, lights, reflectances, radiance});
+    const std::vector<uint32_t> rest = native::add_grid_light(
+        {frame.camera, texels, grid, lights, reflectances, radiance, moved ? kLeastBetween : 0});
     const std::vector<SurfacePoint> others = visible_surfaces(frame.camera, texels, rest);
     visit_points(frame, PixelPoints::List::rest, others, [&](size_t i, std::span<const PointShare> about) {
         const Reflectance r =

@@ -40,13 +40,12 @@ class LightOfGroups {
 /// Returns the irradiance by the sky, W/m^2, of the groups from which links start.
 std::vector<glm::vec3> Relight::light_of_sky(const GatherSky& sky) const {
     const Links& links = bake_->paths.links;
-    std::vector<glm::vec3> arriving(links.first_open.size() - 1, glm::vec3(0.0f));
+    std::vector<glm::vec3> arriving(links.origins(), glm::vec3(0.0f));
     parallel_ranges(arriving.size(), kGroupsATask, [&](size_t begin, size_t end) {
         for (size_t origin = begin; origin < end; ++origin) {
             glm::vec3 sum(0.0f);
-            for (uint32_t i = links.first_open[origin]; i < links.first_open[origin + 1]; ++i)
-                sum += sky.radiance(decode_octahedral(links.open[i]));
-            arriving[origin] = kPi / static_cast<float>(kLinks) * sum;
+            for (const uint32_t code : links.open_of(origin)) sum += sky.radiance(decode_octahedral(code));
+            arriving[origin] = kPi * links.share_of_one(origin) * sum;
         }
     });
     return arriving;
@@ -104,11 +103,10 @@ void Relight::coarsen(std::vector<glm::vec3>& light) const {
 void Relight::follow_links(const std::vector<glm::vec3>& from, std::vector<glm::vec3>& to) const {
     const Links& links = bake_->paths.links;
     const LightOfGroups light(from);
-    std::vector<glm::vec3> arriving(links.groups.size() / kLinks, glm::vec3(0.0f));
+    std::vector<glm::vec3> arriving(links.origins(), glm::vec3(0.0f));
     parallel_ranges(arriving.size(), kGroupsATask, [&](size_t begin, size_t end) {
         for (size_t origin = begin; origin < end; ++origin)
-            arriving[origin] = light.sum(std::span(links.groups).subspan(origin * kLinks, kLinks)) /
-                               static_cast<float>(kLinks);
+            arriving[origin] = links.share_of_one(origin) * light.sum(links.groups_of(origin));
     });
     to.assign(links.origin_of.size(), glm::vec3(0.0f));
     parallel_ranges(to.size(), kGroupsATask, [&](size_t begin, size_t end) {

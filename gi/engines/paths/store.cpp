@@ -73,6 +73,7 @@ BakeSections write_paths(const LightPaths& paths) {
     put(sections, "points", paths.points);
     put(sections, "rays", paths.rays);
     put(sections, "links", paths.links.groups);
+    put(sections, "first links", paths.links.first);
     put(sections, "links of leaves", paths.links.origin_of);
     put(sections, "open links", paths.links.open);
     put(sections, "first open links", paths.links.first_open);
@@ -98,6 +99,7 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
     LUCARNE_TRY(take(sections, "points", paths.points));
     LUCARNE_TRY(take(sections, "rays", paths.rays));
     LUCARNE_TRY(take(sections, "links", paths.links.groups));
+    LUCARNE_TRY(take(sections, "first links", paths.links.first));
     LUCARNE_TRY(take(sections, "links of leaves", paths.links.origin_of));
     LUCARNE_TRY(take(sections, "open links", paths.links.open));
     LUCARNE_TRY(take(sections, "first open links", paths.links.first_open));
@@ -140,10 +142,10 @@ Result<LightPaths> read_paths(const BakeSections& sections, uint32_t rays_a_poin
         !all_below(paths.rays, groups.count(), true))
         return damaged("rays");
     const Links& links = paths.links;
-    if (links.groups.size() % kLinks != 0 || !all_below(links.groups, groups.count(), true) ||
-        links.origin_of.size() != groups.leaves ||
-        !all_below(links.origin_of, links.groups.size() / kLinks, true) ||
-        !are_ranges(links.first_open, links.groups.size() / kLinks, links.open.size()))
+    if (links.first.empty() || !are_ranges(links.first, links.origins(), links.groups.size()) ||
+        !are_ranges(links.first_open, links.origins(), links.open.size()) ||
+        !all_below(links.groups, groups.count(), false) || links.origin_of.size() != groups.leaves ||
+        !all_below(links.origin_of, links.origins(), true))
         return damaged("links");
     if (!are_ranges(paths.entries.first, groups.leaves, paths.entries.sides.size()) ||
         paths.entries.places.size() != paths.entries.sides.size())

@@ -44,7 +44,7 @@ namespace lucarne::gi::paths::native::HWY_NAMESPACE {
 using namespace gi::native::HWY_NAMESPACE;
 
 /// Lights the pixels of a square, as upsample() does; weights below kLeastUpsampleWeight say that nothing
-/// counts, negative ones that there is no surface.
+/// counts or too little does, negative ones that there is no surface.
 void LightSquare(const GridLitPicture& picture, const Square& square, SquareLight& light) {
     const Floats df;
     const CameraView& camera = picture.camera;
@@ -61,7 +61,7 @@ void LightSquare(const GridLitPicture& picture, const Square& square, SquareLigh
         const F reach = add(mul(set(step), pixel_heights(camera, hn::Sqrt(dot(offset, offset)))), radius);
         const F u = hn::LoadU(df, square.u.data() + i), v = hn::LoadU(df, square.v.data() + i);
         V3 sum{zero, zero, zero};
-        F weights = zero;
+        F weights = zero, matching = zero, best = zero;
         for (int k = 0; k < 4; ++k) {
             const GridLight* place = square.places[k];
             if (!place || !(place->shown > 0)) continue;
@@ -73,7 +73,10 @@ void LightSquare(const GridLitPicture& picture, const Square& square, SquareLigh
             const F near = hn::Max(sub(one, over(hn::Abs(dot(normal, apart)), reach)), zero);
             const F cosine2 = mul(cosine, cosine), cosine4 = mul(cosine2, cosine2);
             const F cosine8 = mul(cosine4, cosine4), cosine16 = mul(cosine8, cosine8);
-            const F weight = mul(add(share, set(kLeastUpsampleShare)), mul(cosine16, near));
+            const F match = mul(cosine16, near);
+            const F weight = mul(add(share, set(kLeastUpsampleShare)), match);
+            matching = add(matching, mul(share, match));
+            best = hn::Max(best, match);
             sum = {add(sum.x, mul(weight, set(place->irradiance.x))),
                    add(sum.y, mul(weight, set(place->irradiance.y))),
                    add(sum.z, mul(weight, set(place->irradiance.z)))};
@@ -84,7 +87,8 @@ void LightSquare(const GridLitPicture& picture, const Square& square, SquareLigh
         hn::StoreU(mul(mul(sum.x, kd.x), per_weight), df, light.r.data() + i);
         hn::StoreU(mul(mul(sum.y, kd.y), per_weight), df, light.g.data() + i);
         hn::StoreU(mul(mul(sum.z, kd.z), per_weight), df, light.b.data() + i);
-        hn::StoreU(hn::IfThenElse(shown, weights, set(-1.0f)), df, light.weights.data() + i);
+        const F counting = hn::IfThenZeroElse(hn::Lt(matching, mul(set(picture.least_share), best)), weights);
+        hn::StoreU(hn::IfThenElse(shown, counting, set(-1.0f)), df, light.weights.data() + i);
     }
 }
 

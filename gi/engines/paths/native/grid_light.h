@@ -30,12 +30,15 @@ struct GridLitPicture {
     std::span<const GridLight> lights;  ///< by row and column of the grid
     const gi::native::DiffuseTables& reflectances;
     std::span<glm::vec4> radiance;
+    /// The share of the four places about a pixel that has to lie on its surface. In corners light changes by
+    /// much from pixel to pixel, and the pixels at their end are beyond all places of their surface.
+    float least_share = 0;
 };
 inline constexpr uint32_t kMostStep = 4;
 
 /// Adds to each pixel what its surface reflects of the irradiance that upsample() interpolates, without
-/// writing down surfaces and light of all pixels in between. Returns the pixels for which no place counts, in
-/// an order that is always the same.
+/// writing down surfaces and light of all pixels in between. Returns the pixels for which no place counts, or
+/// too few, in an order that is always the same.
 std::vector<uint32_t> add_grid_light(const GridLitPicture& picture);
 
 }  // namespace lucarne::gi::paths::native

@@ -1,5 +1,6 @@
 #include "gi/engines/paths/bake.h"
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <string>
@@ -209,6 +210,31 @@ TEST(PathsBake, EntryPointsStandForEqualPartsOfTheirGroup) {
     }
     EXPECT_NEAR(covered, 6, 1e-3) << "the inner sides; no ray meets the outer ones";
     for (const Side side : entries.sides) EXPECT_EQ(side % 2, 0u);
+}
+
+TEST(PathsBake, SliversOfSurfacesHaveFewerLinks) {
+    // A surfel outside, so that the last cells along each edge of the box hold a quarter of what others do.
+    std::vector<Surfel> surfels = scenes::closed_box(1, 60, glm::vec3(.5f));
+    surfels.push_back({glm::vec3(1.306f), kZ, glm::vec3(.5f), .01f, 1e-4f, 0});
+    const auto bake = bake_of(input_of(surfels, 80));
+    ASSERT_NE(bake, nullptr);
+    const Links& links = bake->paths.links;
+    std::map<size_t, float> largest;  // leaf whose surface has so many links, m^2
+    for (uint32_t leaf = 0; leaf < bake->paths.groups.leaves; ++leaf) {
+        const uint32_t origin = links.origin_of[leaf];
+        if (origin == kNone) continue;
+        const size_t count = links.groups_of(origin).size() + links.open_of(origin).size();
+        EXPECT_FLOAT_EQ(links.share_of_one(origin), 1 / static_cast<float>(count));
+        largest[count] = std::max(largest[count], bake->paths.groups.area[leaf]);
+    }
+    ASSERT_TRUE(largest.contains(kFewestLinks) && largest.contains(kLinks));
+    for (const auto& [count, area] : largest) {
+        EXPECT_TRUE(count == kLinks || count == kLinks / 2 || count == kFewestLinks) << count;
+        if (count < kLinks) {
+            EXPECT_LT(area, largest[kLinks] / 2);
+        }
+    }
+    EXPECT_LT(largest[kFewestLinks], largest[kLinks] / 4);
 }
 
 TEST(PathsBake, PointsDoNotShareLightThroughWhatStandsBetweenThem) {

@@ -69,7 +69,7 @@ glm::vec3 light_of(size_t place) {
     return {1 + 0.01f * static_cast<float>(place), 2, 0.5f};
 }
 
-Lit in_one_pass(const NoisyPicture& picture, const GatherGrid& grid) {
+Lit in_one_pass(const NoisyPicture& picture, const GatherGrid& grid, float least_share = 0) {
     std::vector<native::GridLight> lights;
     for (uint32_t row = 0; row < grid.rows(); ++row)
         for (uint32_t column = 0; column < grid.columns(); ++column) {
@@ -80,8 +80,8 @@ Lit in_one_pass(const NoisyPicture& picture, const GatherGrid& grid) {
         }
     Lit lit{std::vector<glm::vec4>(picture.texels.size(), glm::vec4(1, 2, 3, 4)), {}};
     const gi::native::DiffuseTables reflectances(picture.materials);
-    lit.missing =
-        native::add_grid_light({picture.camera, picture.texels, grid, lights, reflectances, lit.radiance});
+    lit.missing = native::add_grid_light(
+        {picture.camera, picture.texels, grid, lights, reflectances, lit.radiance, least_share});
     return lit;
 }
 
@@ -128,12 +128,36 @@ TEST(GridLight, PathsReflectWhatUpsampleInterpolates) {
             }
 }
 
+TEST(GridLight, PathsLeaveOutPixelsBetweenTooFewPlaces) {
+    const NoisyPicture picture(61, 47, false);
+    const GatherGrid grid{61, 47, 4, 2, 2};
+    Lit all = in_one_pass(picture, grid);
+    std::ranges::sort(all.missing);
+    for (const float least : {.3f, .6f, .9f}) {
+        Lit sure = in_one_pass(picture, grid, least);
+        std::ranges::sort(sure.missing);
+        EXPECT_TRUE(std::ranges::includes(sure.missing, all.missing));
+        EXPECT_GT(sure.missing.size(), all.missing.size()) << least;
+        for (uint32_t i = 0; i < all.radiance.size(); ++i) {
+            const bool is_missing = std::ranges::binary_search(sure.missing, i);
+            ASSERT_EQ(sure.radiance[i], is_missing ? glm::vec4(1, 2, 3, 4) : all.radiance[i]) << i;
+        }
+        all = sure;  // a larger share leaves out more
+    }
+    // Those before the first column of places are beside two of four at most.
+    for (uint32_t row = 0; row < 47; ++row)
+        for (const uint32_t column : {0u, 1u}) {
+            const uint32_t pixel = row * 61 + column;
+            EXPECT_TRUE(picture.texels[pixel].depth == 0 || std::ranges::binary_search(all.missing, pixel));
+        }
+}
+
 TEST(GridLight, PathsGiveTheSameBitsWithEveryInstructionSet) {
     const NoisyPicture picture(61, 47, false);
     const GatherGrid grid{61, 47, 4, 2, 2};
-    const Lit fastest = in_one_pass(picture, grid);
+    const Lit fastest = in_one_pass(picture, grid, .6f);
     for (int set = 0; gi::native::use_instruction_set(set); ++set)
-        EXPECT_TRUE(in_one_pass(picture, grid) == fastest) << "set " << set;
+        EXPECT_TRUE(in_one_pass(picture, grid, .6f) == fastest) << "set " << set;
     gi::native::use_instruction_set(-1);
 }
 
