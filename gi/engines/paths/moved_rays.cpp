@@ -117,16 +117,15 @@ const MovedRays::Rays& MovedRays::rays_of(uint32_t point, Rays& own) const {
     return own;
 }
 
-float MovedRays::factor(const SurfacePoint& place, const glm::vec3& offset,
+float MovedRays::factor(const glm::vec3& at, const glm::vec3& normal,
                         std::span<const PointShare> about) const {
-    const glm::vec3 at = tracing::offset_origin(place.position, place.normal, place.radius) - offset;
     const auto count = static_cast<float>(bake_->paths.rays_a_point);
     float there = 0, here = 0;
     Rays own;
     for (const PointShare& share : about) {
         const float radius = bake_->paths.points[share.point].radius;
         const Rays& rays = rays_of(share.point, own);
-        const native::RaySums sums = native::add_moved(rays.blocks, at, place.normal, radius * radius);
+        const native::RaySums sums = native::add_moved(rays.blocks, at, normal, radius * radius);
         here += share.share * rays.light;
         there += share.share * light_there(sums.light / count, sums.times / count, rays.light);
     }

@@ -12,7 +12,6 @@
 
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/native/moved_light.h"
-#include "gi/host_frame.h"
 
 namespace lucarne::gi::paths {
 
@@ -26,9 +25,9 @@ class MovedRays {
     /// Takes the radiosity of all groups, W/m^2.
     void set(std::span<const glm::vec3> radiosity);
     /// Returns how many times as much light arrives at a place as at its gathering points in their mean.
-    /// Even light is the same everywhere. `offset`: of the bake's coordinates in those of the place.
-    /// Thread-safe.
-    float factor(const SurfacePoint& place, const glm::vec3& offset, std::span<const PointShare> about) const;
+    /// Even light is the same everywhere. `at`: where its rays start, in the bake's coordinates; in a corner
+    /// that is before the wall that hides the rim of a disc. Thread-safe.
+    float factor(const glm::vec3& at, const glm::vec3& normal, std::span<const PointShare> about) const;
 
  private:
     /// The rays of a point, and their light.

@@ -1,6 +1,7 @@
 #include "gi/engines/paths/paths.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -84,10 +85,12 @@ class PathsEngine final : public Engine {
     Result<void> relight(Frame& frame, const std::vector<LightView>& views, bool any_state);
     const ArrivingLight* arriving_light(Frame& frame, std::span<const Material> materials);
     const MovedRays* moved_rays(Frame& frame);
-    glm::vec3 light_at(const Frame& frame, const SurfacePoint& place, std::span<const PointShare> about,
-                       const MovedRays* moved) const;
+    /// Calls visit(i, points, start) as PixelPoints; `start`: of the rays of pixels at rest.
+    using Visit = std::function<void(size_t, std::span<const PointShare>, const glm::vec3&)>;
+    glm::vec3 light_at(const Frame& frame, const glm::vec3& start, const glm::vec3& normal,
+                       std::span<const PointShare> about, const MovedRays* moved) const;
     void visit_points(const Frame& frame, PixelPoints::List list, std::span<const SurfacePoint> surfaces,
-                      const PixelPoints::Visit& visit);
+                      const Visit& visit);
     void add_by_grid(const Frame& frame, std::span<const Material> materials,
                      std::span<const GBufferTexel> texels, uint32_t step, const MovedRays* moved,
                      std::span<glm::vec4> radiance);
@@ -263,23 +266,29 @@ const MovedRays* PathsEngine::moved_rays(Frame& frame) {
     return &*moved_;
 }
 
-/// Returns the irradiance at a place, W/m^2, from that of the points about it. `moved`: of moved_rays().
-glm::vec3 PathsEngine::light_at(const Frame& frame, const SurfacePoint& place,
+/// Returns the irradiance at a place, W/m^2, from that of the points about it. `start`: of its rays; `moved`:
+/// of moved_rays().
+glm::vec3 PathsEngine::light_at(const Frame& frame, const glm::vec3& start, const glm::vec3& normal,
                                 std::span<const PointShare> about, const MovedRays* moved) const {
     const glm::vec3 light = irradiance_of(about, irradiance_);
     if (!moved || about.empty() || frame.stopped()) return light;
     const glm::vec3 sky = sky_irradiance_.empty() ? glm::vec3(0.0f) : irradiance_of(about, sky_irradiance_);
-    return sky + moved->factor(place, frame.bake_offset, about) * (light - sky);
+    return sky + moved->factor(start - frame.bake_offset, normal, about) * (light - sky);
 }
 
 /// Visits the gathering points of pixels, as PixelPoints; at rest those that pixels see.
 void PathsEngine::visit_points(const Frame& frame, PixelPoints::List list,
-                               std::span<const SurfacePoint> surfaces, const PixelPoints::Visit& visit) {
-    if (!traces_shadows(frame)) return pixel_points_.visit(list, surfaces, visit);
+                               std::span<const SurfacePoint> surfaces, const Visit& visit) {
+    const auto visit_all = [&](size_t i, std::span<const PointShare> about) {
+        visit(i, about, surfaces[i].position);
+    };
+    if (!traces_shadows(frame)) return pixel_points_.visit(list, surfaces, visit_all);
     const SeenPoints points(*tracer_, relight_->bake(), frame.bake_offset, irradiance_);
     pixel_points_.visit(list, surfaces, [&](size_t i, std::span<const PointShare> about) {
+        if (frame.stopped()) return visit_all(i, about);
+        const glm::vec3 start = start_of_rays(*tracer_, surfaces[i]);
         std::vector<PointShare> seen;
-        visit(i, frame.stopped() ? about : points.about(surfaces[i], about, seen));
+        visit(i, points.about(surfaces[i], start, about, seen), start);
     });
 }
 
@@ -296,18 +305,20 @@ void PathsEngine::add_by_grid(const Frame& frame, std::span<const Material> mate
             pixels.push_back(grid.pixel(column, row));
     const std::vector<SurfacePoint> places = visible_surfaces(frame.camera, texels, pixels);
     std::vector<native::GridLight> lights(pixels.size());
-    visit_points(frame, PixelPoints::List::grid, places, [&](size_t i, std::span<const PointShare> about) {
+    using About = std::span<const PointShare>;
+    visit_points(frame, PixelPoints::List::grid, places, [&](size_t i, About about, const glm::vec3& start) {
         lights[i] = {places[i].position - glm::vec3(frame.camera.origin), 1, places[i].normal,
-                     light_at(frame, places[i], about, moved)};
+                     light_at(frame, start, places[i].normal, about, moved)};
     });
     const gi::native::DiffuseTables reflectances(materials);
     const std::vector<uint32_t> rest = native::add_grid_light(
         {frame.camera, texels, grid, lights, reflectances, radiance, moved ? kLeastBetween : 0});
     const std::vector<SurfacePoint> others = visible_surfaces(frame.camera, texels, rest);
-    visit_points(frame, PixelPoints::List::rest, others, [&](size_t i, std::span<const PointShare> about) {
+    visit_points(frame, PixelPoints::List::rest, others, [&](size_t i, About about, const glm::vec3& start) {
         const Reflectance r =
             make_reflectance(materials[others[i].material % materials.size()], others[i].albedo);
-        radiance[rest[i]] += glm::vec4(r.kd / kPi * light_at(frame, others[i], about, moved), 0);
+        radiance[rest[i]] +=
+            glm::vec4(r.kd / kPi * light_at(frame, start, others[i].normal, about, moved), 0);
     });
 }
 
@@ -332,13 +343,14 @@ void PathsEngine::add_indirect(Frame& frame) {
     } else {
         const std::vector<SurfacePoint> surfaces = visible_surfaces(frame.camera, texels);
         visit_points(
-            frame, PixelPoints::List::grid, surfaces, [&](size_t i, std::span<const PointShare> about) {
+            frame, PixelPoints::List::grid, surfaces,
+            [&](size_t i, std::span<const PointShare> about, const glm::vec3& start) {
                 if ((about.empty() && !sky_rays) || frame.stopped()) return;
                 const SurfacePoint& at = surfaces[i];
-                glm::vec3 irradiance = light_at(frame, at, about, moved);
+                glm::vec3 irradiance = light_at(frame, start, at.normal, about, moved);
                 if (sky_rays)
-                    irradiance =
-                        glm::max(irradiance + sky_rays->correction(at, about, mix64(~seed + 1, i)), 0.0f);
+                    irradiance = glm::max(
+                        irradiance + sky_rays->correction(at, start, about, mix64(~seed + 1, i)), 0.0f);
                 const Reflectance r = make_reflectance(materials[at.material % materials.size()], at.albedo);
                 glm::vec3 reflected = r.kd / kPi * irradiance;
                 if (glossy && r.ks > 0 && !about.empty())

@@ -18,6 +18,11 @@ constexpr float kTriedTurn = 1.0f;
 
 }  // namespace
 
+glm::vec3 start_of_rays(const tracing::SurfelTracer& tracer, const SurfacePoint& place) {
+    const glm::vec3 above = tracing::offset_origin(place.position, place.normal, place.radius);
+    return tracing::before_what_hides(tracer, above, place.viewer, place.radius);
+}
+
 SeenPoints::SeenPoints(const tracing::SurfelTracer& tracer, const PathsBake& bake, const glm::vec3& offset,
                        std::span<const glm::vec3> irradiance)
     : tracer_(tracer), bake_(bake), offset_(offset), irradiance_(irradiance) {
@@ -72,12 +77,11 @@ void SeenPoints::find_nearest(const SurfacePoint& place, const glm::vec3& start,
     }
 }
 
-std::span<const PointShare> SeenPoints::about(const SurfacePoint& place, std::span<const PointShare> about,
+std::span<const PointShare> SeenPoints::about(const SurfacePoint& place, const glm::vec3& start,
+                                              std::span<const PointShare> about,
                                               std::vector<PointShare>& seen) const {
     seen.clear();
     if (about.empty()) return about;
-    const glm::vec3 above = tracing::offset_origin(place.position, place.normal, place.radius);
-    const glm::vec3 start = tracing::before_what_hides(tracer_, above, place.viewer, place.radius);
     const auto most = std::ranges::max_element(about, {}, &PointShare::share);
     if (!disagree(about) && sees(start, bake_.paths.points[most->point])) return about;
     float sum = 0;

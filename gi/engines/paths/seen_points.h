@@ -11,6 +11,10 @@
 
 namespace lucarne::gi::paths {
 
+/// Returns where the rays of a place that a picture shows start: above it, on the viewer's side of what hides
+/// it (tracing::before_what_hides()).
+glm::vec3 start_of_rays(const tracing::SurfelTracer& tracer, const SurfacePoint& place);
+
 /// Gathering points as pixels see them. Rims of discs that stick out stand between pixels and points near
 /// them: the light of one side of a rim is not that of the other.
 class SeenPoints {
@@ -20,11 +24,12 @@ class SeenPoints {
     SeenPoints(const tracing::SurfelTracer& tracer, const PathsBake& bake, const glm::vec3& offset,
                std::span<const glm::vec3> irradiance);
 
-    /// Returns those of the points about a place that it sees; all if they have about the same light and it
-    /// sees the one with the largest share, which takes fewer rays. If it sees none, the nearest one of all
-    /// that it sees, and all if there is none. `seen` holds the result unless it is `about`.
-    std::span<const PointShare> about(const SurfacePoint& place, std::span<const PointShare> about,
-                                      std::vector<PointShare>& seen) const;
+    /// Returns those of the points about a place that it sees from `start` (start_of_rays()); all if they
+    /// have about the same light and it sees the one with the largest share, which takes fewer rays. If it
+    /// sees none, the nearest one of all that it sees, and all if there is none. `seen` holds the result
+    /// unless it is `about`.
+    std::span<const PointShare> about(const SurfacePoint& place, const glm::vec3& start,
+                                      std::span<const PointShare> about, std::vector<PointShare>& seen) const;
 
  private:
     bool disagree(std::span<const PointShare> about) const;

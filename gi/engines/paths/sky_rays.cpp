@@ -87,13 +87,11 @@ bool SkyRays::are_unsure(const SurfacePoint& place, std::span<const PointShare> 
            open > kFewestOpen * static_cast<float>(point_sky_.rays_a_point());
 }
 
-glm::vec3 SkyRays::correction(const SurfacePoint& place, std::span<const PointShare> about,
-                              uint64_t key) const {
+glm::vec3 SkyRays::correction(const SurfacePoint& place, const glm::vec3& start,
+                              std::span<const PointShare> about, uint64_t key) const {
     if (!are_unsure(place, about)) return glm::vec3(0.0f);
     const Guide guide(point_sky_, about, place.normal);
     if (guide.empty() && !about.empty()) return glm::vec3(0.0f);
-    const glm::vec3 above = tracing::offset_origin(place.position, place.normal, place.radius);
-    const glm::vec3 start = tracing::before_what_hides(tracer_, above, place.viewer, place.radius);
     Random random(key);
     glm::dvec2 shift;
     shift.x = random.uniform();

@@ -23,9 +23,10 @@ class SkyRays {
             std::span<const glm::vec3> at_points)
         : tracer_(tracer), sky_(sky), point_sky_(point_sky), at_points_(at_points) {}
 
-    /// Returns what has to be added to the interpolated irradiance of a place, W/m^2. `about`: its gathering
-    /// points; `key` chooses the rays.
-    glm::vec3 correction(const SurfacePoint& place, std::span<const PointShare> about, uint64_t key) const;
+    /// Returns what has to be added to the interpolated irradiance of a place, W/m^2. `start`: of its rays;
+    /// `about`: its gathering points; `key` chooses the rays.
+    glm::vec3 correction(const SurfacePoint& place, const glm::vec3& start, std::span<const PointShare> about,
+                         uint64_t key) const;
 
  private:
     /// Returns whether the points are unreliable for the sky at a place.

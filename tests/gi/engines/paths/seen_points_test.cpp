@@ -27,7 +27,7 @@ class PointsAboutAScreen : public testing::Test {
         const SurfacePoint place{{x, .5f, 0}, kZ,   glm::normalize(glm::vec3(x > 0 ? 1 : -1, 0, 1)),
                                  {},          .01f, 0};
         std::vector<PointShare> seen;
-        const auto result = points.about(place, about, seen);
+        const auto result = points.about(place, start_of_rays(*tracer_, place), about, seen);
         return {result.begin(), result.end()};
     }
 
@@ -57,6 +57,13 @@ TEST_F(PointsAboutAScreen, AreReplacedByTheNearestWhereNoneIsSeen) {
     EXPECT_EQ(seen[0].share, 1.0f);
     ASSERT_EQ(seen_from(.05f, {{0, 1.0f}}, uneven_).size(), 1u);
     EXPECT_EQ(seen_from(.05f, {{0, 1.0f}}, uneven_)[0].point, 2u);
+}
+
+TEST_F(PointsAboutAScreen, AreAskedForBeforeWhatHidesARim) {
+    for (const float viewer : {-1.0f, 1.0f}) {
+        const SurfacePoint rim{{-.005f, .5f, 0}, kZ, glm::normalize(glm::vec3(viewer, 0, 1)), {}, .01f, 0};
+        EXPECT_GT(start_of_rays(*tracer_, rim).x * viewer, 0) << "on the side from which it is seen";
+    }
 }
 
 }  // namespace
