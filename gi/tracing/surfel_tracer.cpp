@@ -102,9 +102,11 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
     embree.device = rtcNewDevice(nullptr);
     if (!embree.device) return failed("rays", "Embree does not start on this machine");
     embree.scene = rtcNewScene(embree.device);
-    rtcSetSceneFlags(embree.scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);  // for each_crossed()
-    // No robust flag: rounding may take the hit of a ray that passes exactly along the diagonal of a square,
-    // but surfels overlap. No compact one: rays take half as long again, and the process no less memory.
+    // For each_crossed(). Robust: without it rays pass through the diagonals of squares, and where surfels
+    // lie in rows so do those of their neighbours: light would leak into sealed rooms. Not compact: rays take
+    // half as long again, and the process no less memory.
+    rtcSetSceneFlags(embree.scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
+                                                              RTC_SCENE_FLAG_ROBUST));
     if (count > 0) {
         // Embree bounds its own discs (RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT) by boxes about whole balls.
         // Those of squares are flat, so that rays along a wall meet fewer.
