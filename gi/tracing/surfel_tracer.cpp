@@ -1,7 +1,6 @@
 #include "gi/tracing/surfel_tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -10,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include "gi/shared/edge.h"
-#include "gi/tracing/light_sampling.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::tracing {
@@ -44,20 +42,14 @@ struct Edges {
     std::vector<bool> has;  ///< of each surfel
 };
 
-/// Cuts squares to discs, and discs off at their lines: rejects the hits of a ray elsewhere.
-void reject_beyond_disc(const RTCFilterFunctionNArguments* found) {
-    const auto* edges = static_cast<const Edges*>(found->geometryUserPtr);
+/// Rejects the hits of a ray beyond the lines of the surfels' discs.
+void reject_beyond_edges(const RTCFilterFunctionNArguments* found) {
+    const auto& edges = *static_cast<const Edges*>(found->geometryUserPtr);
     for (unsigned i = 0; i < found->N; ++i) {
         if (!found->valid[i]) continue;
-        const float u = 2 * RTCHitN_u(found->hit, found->N, i) - 1,
-                    v = 2 * RTCHitN_v(found->hit, found->N, i) - 1;
-        if (u * u + v * v > 1) {
-            found->valid[i] = 0;
-            continue;
-        }
         const unsigned number = RTCHitN_primID(found->hit, found->N, i);
-        if (!edges || !edges->has[number]) continue;
-        const Surfel& surfel = edges->surfels[number];
+        if (!edges.has[number]) continue;
+        const Surfel& surfel = edges.surfels[number];
         const glm::vec3 origin(RTCRayN_org_x(found->ray, found->N, i), RTCRayN_org_y(found->ray, found->N, i),
                                RTCRayN_org_z(found->ray, found->N, i)),
             direction(RTCRayN_dir_x(found->ray, found->N, i), RTCRayN_dir_y(found->ray, found->N, i),
@@ -65,16 +57,6 @@ void reject_beyond_disc(const RTCFilterFunctionNArguments* found) {
         const glm::vec3 offset = origin - surfel.position + direction * RTCRayN_tfar(found->ray, found->N, i);
         if (!within_edge(surfel.edge, offset)) found->valid[i] = 0;
     }
-}
-
-/// The corners of the square about a disc, counter-clockwise as its normal sees them.
-constexpr size_t kCorners = 4;
-std::array<glm::vec3, kCorners> corners_of(const Surfel& s) {
-    glm::vec3 u, v;
-    frame_of(s.normal, u, v);
-    u *= s.radius;
-    v *= s.radius;
-    return {s.position - u - v, s.position + u - v, s.position + u + v, s.position - u + v};
 }
 
 }  // namespace
@@ -102,27 +84,22 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
     embree.device = rtcNewDevice(nullptr);
     if (!embree.device) return failed("rays", "Embree does not start on this machine");
     embree.scene = rtcNewScene(embree.device);
-    // For each_crossed(). Robust: without it rays pass through the diagonals of squares, and where surfels
-    // lie in rows so do those of their neighbours: light would leak into sealed rooms. Not compact: rays take
-    // half as long again, and the process no less memory.
-    rtcSetSceneFlags(embree.scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
-                                                              RTC_SCENE_FLAG_ROBUST));
+    rtcSetSceneFlags(embree.scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);  // for each_crossed()
+    // No compact or robust flags: robust ones only concern triangles, and discs are planes with a radius.
     if (count > 0) {
-        // Embree bounds its own discs (RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT) by boxes about whole balls.
-        // Those of squares are flat, so that rays along a wall meet fewer.
-        const RTCGeometry squares = rtcNewGeometry(embree.device, RTC_GEOMETRY_TYPE_QUAD);
+        const RTCGeometry discs = rtcNewGeometry(embree.device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
         auto* places = static_cast<float*>(rtcSetNewGeometryBuffer(
-            squares, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), kCorners * count));
-        auto* numbers = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-            squares, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, kCorners * sizeof(unsigned), count));
-        if (places && numbers) {
+            discs, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), count));
+        auto* normals = static_cast<float*>(rtcSetNewGeometryBuffer(
+            discs, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), count));
+        if (places && normals) {
             parallel_ranges(count, 65536, [&](size_t first, size_t last) {
                 for (size_t i = first; i < last; ++i) {
-                    const std::array<glm::vec3, kCorners> corners = corners_of(tracer->surfels_[i]);
-                    for (size_t corner = kCorners * i; corner < kCorners * (i + 1); ++corner) {
-                        std::copy_n(&corners[corner % kCorners].x, 3, places + 3 * corner);
-                        numbers[corner] = static_cast<unsigned>(corner);
-                    }
+                    const Surfel& s = tracer->surfels_[i];
+                    const float place[4] = {s.position.x, s.position.y, s.position.z, s.radius};
+                    std::copy_n(place, 4, places + 4 * i);
+                    const float normal[3] = {s.normal.x, s.normal.y, s.normal.z};
+                    std::copy_n(normal, 3, normals + 3 * i);
                 }
             });
             if (std::ranges::any_of(tracer->surfels_,
@@ -130,14 +107,14 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
                 embree.edges.emplace(Edges{tracer->surfels_, {}});
                 for (const Surfel& s : tracer->surfels_)
                     embree.edges->has.push_back(s.edge != glm::vec3(0.0f));
-                rtcSetGeometryUserData(squares, &*embree.edges);
+                rtcSetGeometryUserData(discs, &*embree.edges);
+                rtcSetGeometryIntersectFilterFunction(discs, reject_beyond_edges);
+                rtcSetGeometryOccludedFilterFunction(discs, reject_beyond_edges);
             }
-            rtcSetGeometryIntersectFilterFunction(squares, reject_beyond_disc);
-            rtcSetGeometryOccludedFilterFunction(squares, reject_beyond_disc);
-            rtcCommitGeometry(squares);
-            rtcAttachGeometry(embree.scene, squares);
+            rtcCommitGeometry(discs);
+            rtcAttachGeometry(embree.scene, discs);
         }
-        rtcReleaseGeometry(squares);
+        rtcReleaseGeometry(discs);
     }
     rtcCommitScene(embree.scene);
     if (rtcGetDeviceError(embree.device) != RTC_ERROR_NONE)

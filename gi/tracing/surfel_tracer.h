@@ -21,9 +21,10 @@ inline constexpr float kOriginOffset = 1.0f;
 /// Returns whether rays can hit a surfel: it has a normal, a positive radius, and a finite place.
 bool has_disc(const Surfel& surfel);
 
-/// Ray queries against surfels as opaque discs with two equal sides (cut out of Embree's quads), which end at
-/// their lines (gi/shared/edge.h). Surfels without a normal or with a radius that is not positive have no
-/// disc and are left out. Thread-safe once made.
+/// Ray queries against surfels as opaque discs with two equal sides (Embree's oriented discs), which end at
+/// their lines (gi/shared/edge.h). Surfels
+/// without a normal or with a radius that is not positive have no disc and are left out. Thread-safe once
+/// made.
 class SurfelTracer {
  public:
     /// Errors: Embree's (out of memory).

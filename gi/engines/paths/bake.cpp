@@ -210,7 +210,7 @@ class PathsPrecomputation final : public Precomputation {
 
 /// About what MEASURED.md says of naves. Large scans have few gathering points for their surfels.
 BakeCost cost_of(const EngineSettings& settings, uint64_t surfels) {
-    constexpr double kSeconds = 28e-6, kSecondsARay = .07e-6;                   // a surfel
+    constexpr double kSeconds = 35e-6, kSecondsARay = .09e-6;                   // a surfel
     constexpr double kMemory = 500, kMemoryARay = 1;                            // bytes
     constexpr double kFile = 34, kMostOfFile = 100, kFileOfPointsARay = 6.7e4;  // bytes; of all points
     const auto count = static_cast<double>(surfels), rays = static_cast<double>(settings[kGatherRays]);
