@@ -123,7 +123,8 @@ std::vector<int8_t> toward_stations(const ChunkSurface& surface, std::span<const
     return toward;
 }
 
-Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const NormalOptions& options) {
+Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const NormalOptions& options,
+                                     const OrientationDetail& detail) {
     LUCARNE_ASSIGN(auto neighbours,
                    ChunkNeighbours::load(cache, chunk, options.search, options.memory / kHaloMemory));
     LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
@@ -138,7 +139,7 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     agree_on_lines(neighbours, surface);
     ChunkOrientation orientation;
     if (options.normals) {
-        orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays));
+        orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays), detail);
     } else {
         orientation.components.assign(neighbours.site_count(), 0);
     }
@@ -206,7 +207,7 @@ size_t wave_end(const ChunkAccess& chunks, size_t first, size_t most, uint64_t m
 Result<OrientationSigns> estimate_normals(
     const ChunkAccess& chunks, const NormalOptions& options,
     const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink) {
-    OrientationMerger merger;
+    OrientationMerger merger(OrientationDetail::of(chunks));
     const ChunkRange all{0, chunks.chunk_count()};
     LUCARNE_TRY(estimate_range(chunks, all, options, sink, [&](ChunkVotes&& votes) { merger.add(votes); }));
     return merger.signs();
@@ -222,14 +223,15 @@ Result<std::vector<BorderMessage>> estimate_range(
     const ThreadLimit threads(options.threads);
     ChunkCache cache(chunks, options.memory / 8);
     const double unit = 1 / cache.scale() / options.area_unit;
-    BorderMail mail(range.end);
+    const auto detail = OrientationDetail::of(chunks);
+    BorderMail mail(range.end, detail);
     for (size_t first = range.first, last; first < range.end; first = last) {
         last = wave_end(chunks, first, range.end, options.memory / 2);
         std::vector<std::optional<ChunkEstimate>> wave(last - first);
         FirstError error;
         parallel_ranges(wave.size(), 1, [&](size_t i, size_t) {
             if (chunks.point_count(first + i) == 0) return;
-            auto estimate = estimate_chunk(cache, first + i, options);
+            auto estimate = estimate_chunk(cache, first + i, options, detail);
             if (estimate)
                 wave[i] = std::move(*estimate);
             else

@@ -16,6 +16,7 @@ Bytes encode_votes(const std::vector<ChunkVotes>& chunks) {
     for (const ChunkVotes& chunk : chunks) {
         writer.put_all(chunk.components);
         writer.put_all(chunk.votes);
+        writer.put_all(chunk.discs);
     }
     return writer.take();
 }
@@ -23,11 +24,12 @@ Bytes encode_votes(const std::vector<ChunkVotes>& chunks) {
 /// Joins the votes of all ranks. Returns the signs of the chunks in `own`; those of others are empty. A
 /// meeting.
 Result<OrientationSigns> join_votes(Ranks& ranks, const std::vector<ChunkVotes>& votes, ChunkRange own,
-                                    size_t chunks, const std::function<size_t(size_t)>& owner) {
+                                    const ChunkAccess& access, const std::function<size_t(size_t)>& owner) {
+    const size_t chunks = access.chunk_count();
     LUCARNE_ASSIGN(auto all, tell_first(ranks, encode_votes(votes)));
     std::vector<Bytes> parcels(ranks.count());
     if (ranks.rank() == 0) {
-        OrientationMerger merger;
+        OrientationMerger merger(OrientationDetail::of(access));
         size_t chunk = 0;
         for (size_t rank = 0; rank < all.size(); ++rank) {
             ByteReader reader(all[rank]);
@@ -35,6 +37,7 @@ Result<OrientationSigns> join_votes(Ranks& ranks, const std::vector<ChunkVotes>&
                 ChunkVotes part;
                 part.components = reader.get_all<ChunkVotes::Component>();
                 part.votes = reader.get_all<ComponentVote>();
+                part.discs = reader.get_all<SightDisc>();
                 merger.add(part);
             }
             Bytes().swap(all[rank]);
@@ -112,7 +115,7 @@ Result<void> SurfaceStore::estimate_together(const ChunkStore& chunks, const Chu
         all.insert(all.end(), known.begin(), known.end());
         known = std::move(all);
     }
-    LUCARNE_ASSIGN(signs_, join_votes(ranks, votes, own, access.chunk_count(), owner));
+    LUCARNE_ASSIGN(signs_, join_votes(ranks, votes, own, access, owner));
     return {};
 }
 

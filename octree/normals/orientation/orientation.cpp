@@ -18,6 +18,13 @@ constexpr float kParallel = 0.7f;  ///< |n.n'| from which the surface is taken a
 constexpr size_t kGrades = 512;    ///< steps of doubt in the counting sort of edges
 constexpr float kSteep = 0.5f;     ///< squared sine of an offset's angle to a plane: 45 degrees
 constexpr float kSmooth = 0.1f;    ///< doubt up to which a single edge is trusted: 25 degrees
+/// Squared sine of an edge's angle to the planes of its ends up to which it runs along their surface: 18
+/// degrees. Edges from one face of a board to the other are steeper.
+constexpr float kFlatStep = 0.1f;
+constexpr float kSmoothStep = 0.95f;  ///< |n.n'| from which the surface does not turn along it: 18 degrees
+/// Share of the discs without a station's word from which their sides are asked by sight.
+constexpr double kInDoubt = 0.02;
+constexpr unsigned kRounds = 8;  ///< forests that are tried where sides are asked by sight
 constexpr size_t kVotesPerPair = 256;
 constexpr std::ptrdiff_t kAhead = 12;  ///< how many edges ahead memory is asked for
 
@@ -30,15 +37,24 @@ bool has_normal(const glm::vec3& n) {
 struct SortedEdges {
     std::vector<uint32_t> slots;
     std::vector<uint16_t> grade;  ///< of each slot: doubt in steps, and kOpposite
+    std::vector<uint8_t> along;   ///< of each site, as PatchGraph::along
     static constexpr uint16_t kNone = 0xffff, kOpposite = 0x8000;
     bool opposite(uint32_t slot) const { return grade[slot] & kOpposite; }
     float doubt(uint32_t slot) const { return static_cast<float>(grade[slot] & ~kOpposite) / (kGrades - 1); }
 };
 
+/// Whether an edge runs along a surface that does not turn between its ends.
+bool runs_along(const glm::vec3& normal, const glm::vec3& other, const glm::vec3& offset) {
+    const float rise = glm::dot(normal, offset), other_rise = glm::dot(other, offset);
+    return std::abs(glm::dot(normal, other)) > kSmoothStep &&
+           std::max(rise * rise, other_rise * other_rise) < kFlatStep * glm::dot(offset, offset);
+}
+
 SortedEdges sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& surface) {
     const auto& edges = surface.edges;
     SortedEdges sorted;
     sorted.grade.resize(edges.size() * kSiteEdges);
+    sorted.along.assign(edges.size(), 0);
     parallel_ranges(edges.size(), 4096, [&](size_t first, size_t last) {
         for (auto i = static_cast<uint32_t>(first); i < last; ++i)
             for (size_t e = 0; e < kSiteEdges; ++e) {
@@ -47,9 +63,11 @@ SortedEdges sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& 
                 grade = SortedEdges::kNone;
                 if (j == kNoSite || !has_normal(surface.normals[i]) || !has_normal(surface.normals[j]))
                     continue;
+                const glm::vec3 offset(neighbours.position(j) - neighbours.position(i));
+                if (runs_along(surface.normals[i], surface.normals[j], offset))
+                    sorted.along[i] |= static_cast<uint8_t>(1u << e);
                 // An edge known from both ends is used once.
                 if (j < i && std::find(edges[j].begin(), edges[j].end(), i) != edges[j].end()) continue;
-                const glm::vec3 offset(neighbours.position(j) - neighbours.position(i));
                 const Agreement a = agreement(surface.normals[i], surface.normals[j], offset);
                 if (a.doubt >= 1) continue;
                 grade = static_cast<uint16_t>(a.doubt * (kGrades - 1));
@@ -82,7 +100,7 @@ Agreement agreement(const glm::vec3& normal, const glm::vec3& other, const glm::
 }
 
 ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& surface,
-                              std::span<const int8_t> toward) {
+                              std::span<const int8_t> toward, const OrientationDetail& detail) {
     auto& normals = surface.normals;
     const auto sites = static_cast<uint32_t>(normals.size());
     SignedForest forest(sites + 1);  // the last node represents the stations
@@ -119,6 +137,7 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
     votes.unite(forest);
 
     orientation.components.assign(sites, 0);
+    std::vector<uint8_t> flipped(sites, 0);
     std::unordered_map<uint32_t, uint32_t> numbers;  // component by root
     const auto stations = forest.find(sites);
     if (orientation.anchored) numbers[stations.node] = 0;
@@ -131,9 +150,30 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
         // Signs are relative to the root, those of the anchored component relative to the stations.
         const bool turn = root.opposite != (orientation.anchored && number == 0 && stations.opposite);
         if (turn) normals[i] = -normals[i];
+        flipped[i] = turn;
     }
     orientation.count = std::max<uint32_t>(1, static_cast<uint32_t>(numbers.size()));
+    if (orientation.anchored) return orientation;
+    const auto same = [&](uint32_t site, uint32_t e) {
+        const uint32_t slot = site * static_cast<uint32_t>(kSiteEdges) + e;
+        if (sorted.grade[slot] == SortedEdges::kNone) return 0.0f;
+        const uint32_t other = surface.edges[site][e];
+        const float agree = 1 - sorted.doubt(slot);
+        return sorted.opposite(slot) != (flipped[site] != flipped[other]) ? -agree : agree;
+    };
+    Patches patches = divide_into_patches({surface.edges, sorted.along, same}, normals, detail.patch);
+    orientation.components = std::move(patches.of);
+    orientation.count = patches.count;
+    orientation.votes = std::move(patches.votes);
     return orientation;
+}
+
+OrientationDetail OrientationDetail::of(const ChunkAccess& chunks) {
+    constexpr uint64_t kLeastPatch = 64, kPatches = 16384, kDiscs = 65536;
+    uint64_t points = 0;
+    for (size_t chunk = 0; chunk < chunks.chunk_count(); ++chunk) points += chunks.point_count(chunk);
+    return {static_cast<size_t>(std::max(kLeastPatch, points / kPatches)),
+            static_cast<size_t>(points / kDiscs + 1)};
 }
 
 void VoteSums::add(const ComponentVote& vote) {
@@ -162,9 +202,28 @@ ChunkVotes BorderMail::finish(uint32_t chunk, const ChunkNeighbours& neighbours,
     each([&](Shell& shell, uint32_t site) {
         shell.add(neighbours.position(site), surface.normals[site], surface.areas[site]);
     });
+    votes.discs = discs(neighbours, surface, orientation);
     votes.votes = hear(chunk, neighbours, surface, orientation);
+    for (const PatchVote& vote : orientation.votes) votes.votes.push_back({chunk, vote.a, vote.b, vote.same});
     tell(chunk, surface, orientation);
     return votes;
+}
+
+std::vector<SightDisc> BorderMail::discs(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
+                                         const ChunkOrientation& orientation) const {
+    std::vector<SightDisc> found;
+    found.reserve(surface.normals.size() / detail_.disc + 1);
+    float area = 0;
+    size_t sites = 0;
+    for (uint32_t site = 0; site < surface.normals.size(); ++site) {
+        if (!has_normal(surface.normals[site]) || !(surface.areas[site] > kStrayArea)) continue;
+        area += surface.areas[site];
+        if (++sites % detail_.disc != 0) continue;
+        found.push_back(
+            {neighbours.position(site), surface.normals[site], area, orientation.components[site]});
+        area = 0;
+    }
+    return found;
 }
 
 std::vector<ComponentVote> BorderMail::hear(uint32_t chunk, const ChunkNeighbours& neighbours,
@@ -220,7 +279,34 @@ void OrientationMerger::add(const ChunkVotes& chunk) {
     components_.insert(components_.end(), chunk.components.begin(), chunk.components.end());
     for (const ComponentVote& vote : chunk.votes)
         votes_.add(first_component_[vote.chunk] + vote.component, base + vote.own, vote.same);
+    for (SightDisc disc : chunk.discs) {
+        disc.component += base;
+        discs_.push_back(disc);
+    }
     first_component_.push_back(static_cast<uint32_t>(components_.size()));
+}
+
+bool OrientationMerger::in_doubt() const {
+    size_t without = 0;
+    for (const SightDisc& disc : discs_) without += !components_[disc.component].anchored;
+    return static_cast<double>(without) > kInDoubt * static_cast<double>(discs_.size());
+}
+
+std::vector<bool> OrientationMerger::inside_out(SignedForest& forest) const {
+    const auto count = static_cast<uint32_t>(components_.size());
+    SignedForest surfaces(count);
+    votes_.each([&](uint32_t a, uint32_t b) { surfaces.unite(a, b, false); });
+    std::vector<Shell> wholes(count);  // in the orientation of the root of `forest`
+    for (uint32_t c = 0; c < count; ++c)
+        wholes[surfaces.find(c).node].join(components_[c].shell, forest.find(c).opposite);
+    std::vector<double> balance(count + 1, 0);
+    for (uint32_t c = 0; c < count; ++c)
+        if (surfaces.find(c).node == c)
+            balance[forest.find(c).node] +=
+                wholes[c].inside_out() ? wholes[c].evidence() : -wholes[c].evidence();
+    std::vector<bool> turned(count + 1);
+    for (uint32_t root = 0; root <= count; ++root) turned[root] = balance[root] > 0;
+    return turned;
 }
 
 OrientationSigns OrientationMerger::signs() const {
@@ -228,13 +314,15 @@ OrientationSigns OrientationMerger::signs() const {
     SignedForest forest(count + 1);  // the last node represents the stations
     for (uint32_t c = 0; c < count; ++c)
         if (components_[c].anchored) forest.unite(c, count, false);
-    votes_.unite(forest);
-
-    std::unordered_map<uint32_t, Shell> wholes;  // by root, in the root's orientation
-    for (uint32_t c = 0; c < count; ++c) {
-        const auto root = forest.find(c);
-        wholes[root.node].join(components_[c].shell, root.opposite);
+    if (in_doubt()) {
+        SignVotes votes = votes_;
+        vote_by_sight(discs_, detail_.disc, votes);
+        votes.unite(forest, kRounds);
+    } else {
+        votes_.unite(forest);
     }
+
+    const auto turned = inside_out(forest);
     const auto stations = forest.find(count);
     OrientationSigns signs(first_component_.size() - 1);
     for (size_t chunk = 0; chunk < signs.size(); ++chunk) {
@@ -242,8 +330,7 @@ OrientationSigns OrientationMerger::signs() const {
         signs[chunk].assign(std::max(1u, last - first), 1);
         for (uint32_t c = first; c < last; ++c) {
             const auto root = forest.find(c);
-            const bool whole =
-                root.node == stations.node ? stations.opposite : wholes[root.node].inside_out();
+            const bool whole = root.node == stations.node ? stations.opposite : turned[root.node];
             const bool turn = root.opposite != whole;
             signs[chunk][c - first] = turn ? -1 : 1;
         }

@@ -9,7 +9,9 @@
 
 #include <glm/vec3.hpp>
 
+#include "octree/normals/orientation/patches.h"
 #include "octree/normals/orientation/shell.h"
+#include "octree/normals/orientation/sight.h"
 #include "octree/normals/orientation/signed_forest.h"
 #include "octree/normals/surface/chunk_surface.h"
 
@@ -32,15 +34,25 @@ struct ChunkOrientation {
     std::vector<uint32_t> components;  ///< component of each site; sites without a normal have 0
     uint32_t count = 1;                ///< number of components
     bool anchored = false;             ///< component 0 already faces the stations
+    std::vector<PatchVote> votes;      ///< between the components
+};
+
+/// How finely the orientation is asked, which depends on the number of points of the whole cloud.
+struct OrientationDetail {
+    size_t patch = 64;  ///< sites of a patch
+    size_t disc = 1;    ///< sites for which a SightDisc stands
+    /// At most some ten thousand patches and discs in all.
+    static OrientationDetail of(const ChunkAccess& chunks);
 };
 
 /// Propagates orientation along a minimum spanning forest of the neighbourhood graph. On smooth surfaces it
 /// follows single edges. Between smooth pieces all edges vote, because at creases a single edge is
-/// unreliable. Flips `surface.normals` so that they are consistent within each component. `toward[site]` is
-/// +1 where the normal is known to point toward its station, -1 where it must be flipped, 0 where nothing is
-/// known.
+/// unreliable. Where no station anchors the chunk, its components are patches, between which all edges vote
+/// again, together with what sees each other (vote_by_sight). Flips `surface.normals` so that they are
+/// consistent within each component. `toward[site]` is +1 where the normal is known to point toward its
+/// station, -1 where it must be flipped, 0 where nothing is known.
 ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& surface,
-                              std::span<const int8_t> toward);
+                              std::span<const int8_t> toward, const OrientationDetail& detail);
 
 /// A vote on how a component of one chunk agrees with one of an earlier chunk: the sum over the pairs of
 /// points that stand for them.
@@ -58,6 +70,7 @@ struct ChunkVotes {
     };
     std::vector<Component> components;
     std::vector<ComponentVote> votes;
+    std::vector<SightDisc> discs;  ///< their components are those of the chunk
 };
 
 /// Sums up the votes of a chunk by pairs of components, in the order in which the pairs come.
@@ -87,7 +100,7 @@ struct BorderMessage {
 class BorderMail {
  public:
     /// Chunks from `end` on belong to other processes.
-    explicit BorderMail(size_t end) : inboxes_(end) {}
+    BorderMail(size_t end, const OrientationDetail& detail) : inboxes_(end), detail_(detail) {}
 
     /// Finishes a chunk.
     ChunkVotes finish(uint32_t chunk, const ChunkNeighbours& neighbours, const ChunkSurface& surface,
@@ -96,6 +109,9 @@ class BorderMail {
     std::vector<BorderMessage> take_outgoing() { return std::move(outgoing_); }
 
  private:
+    /// Returns discs that stand for the sites.
+    std::vector<SightDisc> discs(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
+                                 const ChunkOrientation& orientation) const;
     /// Turns the messages for this chunk into votes.
     std::vector<ComponentVote> hear(uint32_t chunk, const ChunkNeighbours& neighbours,
                                     const ChunkSurface& surface, const ChunkOrientation& orientation);
@@ -104,12 +120,15 @@ class BorderMail {
 
     std::vector<std::vector<BorderMessage>> inboxes_;  ///< messages to each chunk that is not finished
     std::vector<BorderMessage> outgoing_;
+    OrientationDetail detail_;
 };
 
 /// Joins the components of all chunks: builds a signed graph of their votes, and its maximum spanning forest.
-/// Holds a few words a component.
+/// Holds a few words a component, and the discs.
 class OrientationMerger {
  public:
+    explicit OrientationMerger(const OrientationDetail& detail) : detail_(detail) {}
+
     /// Adds the next chunk, in ascending order. A chunk without points has no components.
     void add(const ChunkVotes& chunk);
 
@@ -118,9 +137,17 @@ class OrientationMerger {
     OrientationSigns signs() const;
 
  private:
+    /// Whether no station tells which side was seen of a part of the surface that counts.
+    bool in_doubt() const;
+    /// Returns for each root of `forest` whether its shapes say that it is inside out. Each connected surface
+    /// has a say: two rooms that see each other's outer sides do not look like a room together.
+    std::vector<bool> inside_out(SignedForest& forest) const;
+
     std::vector<uint32_t> first_component_{0};  ///< of each chunk added so far, and the end
     std::vector<ChunkVotes::Component> components_;
     SignVotes votes_;  ///< between components
+    OrientationDetail detail_;
+    std::vector<SightDisc> discs_;
 };
 
 }  // namespace lucarne::octree

@@ -27,6 +27,8 @@ class Shell {
     void join(const Shell& part, bool opposite);
     /// Whether all normals must be flipped to face the side that was seen.
     bool inside_out() const;
+    /// The surface that tells: its area as seen from above.
+    double evidence() const { return sum().lie; }
 
  private:
     /// Sums over the points in one tenth of the height.

@@ -16,20 +16,38 @@ struct Vote {
 /// The nodes that votes join, and their orientation: a spanning forest, and a sign for each node.
 class Ballot {
  public:
-    Ballot(uint32_t nodes, std::vector<Vote> votes) : votes_(std::move(votes)), links_(nodes), nodes_(nodes) {
-        std::sort(votes_.begin(), votes_.end(), [](const Vote& v, const Vote& w) {
-            const double x = std::abs(v.same), y = std::abs(w.same);
+    Ballot(uint32_t nodes, std::vector<Vote> votes) : votes_(std::move(votes)), nodes_(nodes) { build(); }
+
+    /// Builds the forest: strongest votes first, those that agree with the present signs before the others.
+    /// Nodes without a sign get theirs along it.
+    void build() {
+        const auto kept = [&](const Vote& vote) {
+            const int signs = nodes_[vote.a].sign * nodes_[vote.b].sign;
+            return signs == 0 ? std::abs(vote.same) : vote.same * signs;
+        };
+        std::sort(votes_.begin(), votes_.end(), [&](const Vote& v, const Vote& w) {
+            const double x = kept(v), y = kept(w);
             return x != y ? x > y : v.a != w.a ? v.a < w.a : v.b < w.b;
         });
-        SignedForest joined(nodes);
+        links_.assign(nodes_.size(), {});
+        order_.clear();
+        SignedForest joined(static_cast<uint32_t>(nodes_.size()));
         for (const Vote& vote : votes_)
             if (joined.unite(vote.a, vote.b, vote.same < 0)) {
                 links_[vote.a].push_back({vote.b, vote.same < 0});
                 links_[vote.b].push_back({vote.a, vote.same < 0});
             }
-        for (uint32_t node = 0; node < nodes; ++node)
-            if (!nodes_[node].sign) grow(node);
+        std::vector<bool> reached(nodes_.size(), false);
+        for (uint32_t node = 0; node < nodes_.size(); ++node)
+            if (!reached[node]) grow(node, reached);
         for (Vote& vote : votes_) vote.meet = meet(vote.a, vote.b);
+    }
+
+    /// Returns the sum of the votes that agree less the others.
+    double agreed() const {
+        double sum = 0;
+        for (const Vote& vote : votes_) sum += vote.same * nodes_[vote.a].sign * nodes_[vote.b].sign;
+        return sum;
     }
 
     /// Each link divides its tree into two parts. Where the sum of all votes across it contradicts the link,
@@ -65,8 +83,10 @@ class Ballot {
         double across = 0;
     };
 
-    void grow(uint32_t root) {
-        nodes_[root] = {root, 0, root, 1};
+    void grow(uint32_t root, std::vector<bool>& reached) {
+        const int8_t own = nodes_[root].sign ? nodes_[root].sign : int8_t{1};
+        nodes_[root] = {root, 0, root, own};
+        reached[root] = true;
         size_t at = order_.size();
         order_.push_back(root);
         for (; at < order_.size(); ++at) {
@@ -74,10 +94,12 @@ class Ballot {
             const bool equal =
                 nodes_[up].depth - nodes_[far].depth == nodes_[far].depth - nodes_[farther].depth;
             for (const Link& link : links_[up]) {
-                if (nodes_[link.node].sign) continue;
+                if (reached[link.node]) continue;
+                reached[link.node] = true;
+                const int8_t before = nodes_[link.node].sign;
                 const int sign = link.opposite ? -nodes_[up].sign : nodes_[up].sign;
                 nodes_[link.node] = {up, nodes_[up].depth + 1, equal ? farther : up,
-                                     static_cast<int8_t>(sign)};
+                                     before ? before : static_cast<int8_t>(sign)};
                 order_.push_back(link.node);
             }
         }
@@ -130,7 +152,7 @@ class Ballot {
 
 }  // namespace
 
-void SignVotes::unite(SignedForest& forest) const {
+void SignVotes::unite(SignedForest& forest, unsigned rounds) const {
     std::unordered_map<uint64_t, double> open;  // votes between nodes that are not joined yet
     for (const auto& [pair, vote] : votes_) {
         const auto a = forest.find(static_cast<uint32_t>(pair >> 32)),
@@ -150,6 +172,12 @@ void SignVotes::unite(SignedForest& forest) const {
     for (const auto& [pair, vote] : open) votes.push_back({number(pair >> 32), number(pair), vote});
     Ballot ballot(static_cast<uint32_t>(nodes.size()), std::move(votes));
     ballot.revise();
+    for (unsigned round = 1; round < rounds; ++round) {
+        const double before = ballot.agreed();
+        ballot.build();
+        ballot.revise();
+        if (!(ballot.agreed() > before)) break;
+    }
     ballot.each([&](uint32_t node, uint32_t parent, bool opposite) {
         forest.unite(nodes[node], nodes[parent], opposite);
     });

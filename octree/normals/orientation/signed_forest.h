@@ -59,10 +59,17 @@ class SignVotes {
     void add(uint32_t a, uint32_t b, bool opposite, double weight) { add(a, b, opposite ? -weight : weight); }
     /// `same` is positive for the same orientation, negative for the opposite one.
     void add(uint32_t a, uint32_t b, double same) { votes_[key(a, b)] += same; }
+    /// Calls use(a, b) for each pair that has votes.
+    template <class Use>
+    void each(const Use& use) const {
+        for (const auto& [pair, vote] : votes_)
+            use(static_cast<uint32_t>(pair >> 32), static_cast<uint32_t>(pair));
+    }
     /// Joins nodes by their votes, along the maximum spanning forest, strongest votes first. Then checks each
     /// link against all votes between the two sides that it joins, because one false link between two halves
-    /// of a room turns one of them inside out.
-    void unite(SignedForest& forest) const;
+    /// of a room turns one of them inside out. `rounds`: how many forests are tried, each along the votes
+    /// that agree after the one before.
+    void unite(SignedForest& forest, unsigned rounds = 1) const;
 
  private:
     static uint64_t key(uint32_t a, uint32_t b) {

@@ -152,6 +152,46 @@ TEST(Orientation, WhatStandsOnTheGroundIsSeenFromOutside) {
     for (const uint32_t parts : {1u, 3u}) EXPECT_GT(oriented("box on the ground", scene, parts), 0.998);
 }
 
+/// Walls that touch a floor below which there are points, too, as in a cloud that a mesh was sampled to:
+/// where they meet, the floor outside and the floor inside speak for opposite sides.
+TEST(Orientation, BodiesOnAFloorThatGoesOnBelowThemAreSeenFromOutside) {
+    Cloud scene = room(60000);
+    for (const double x : {0.25, 0.65}) {
+        const Cloud body = cube(20000, 0, 3);
+        for (size_t i = 0; i < body.points.size(); ++i) {
+            if (body.normals[i].z < 0) continue;
+            scene.points.push_back(glm::dvec3(x, 0.4, 0) + body.points[i] * glm::dvec3(0.2, 0.2, x + 0.2));
+            scene.normals.push_back(body.normals[i]);
+        }
+    }
+    for (const uint32_t parts : {1u, 2u, 3u}) EXPECT_GT(oriented("bodies in a room", scene, parts), 0.995);
+}
+
+/// Both faces of a board are nearer to each other than points of a face that follow each other.
+TEST(Orientation, BothFacesOfABoardInARoomAreSeenFromOutside) {
+    Cloud scene = room(60000);
+    const Cloud board = cube(20000, 0, 4);
+    for (size_t i = 0; i < board.points.size(); ++i) {
+        const glm::dvec3 sides(0.5, 0.5, 0.02);
+        const double share = board.normals[i].z != 0 ? 0.25 : 0.01;  // evenly by area
+        if (static_cast<double>(mix64(i, 5) >> 11) * 0x1.0p-53 > 4 * share) continue;
+        scene.points.push_back(glm::dvec3(0.25, 0.25, 0.4) + board.points[i] * sides);
+        scene.normals.push_back(board.normals[i]);
+    }
+    for (const uint32_t parts : {1u, 3u}) EXPECT_GT(oriented("board in a room", scene, parts), 0.99);
+}
+
+/// No ray of a plane, of points at one place or of such a line hits anything; millions of points in a cell of
+/// the grid of rays end in bounded time.
+TEST(Orientation, CloudsWithoutInsideAndOutsideEnd) {
+    Cloud far = sphere(20000);
+    for (const double x : {1e6, -1e7}) append(far, plane(30), {x, x, x});
+    for (const uint32_t parts : {1u, 2u}) EXPECT_GT(oriented("sphere, far outliers", far, parts), 0.99);
+    Cloud line;
+    for (int i = 0; i < 5000; ++i) line.points.push_back({i * 1e-3, 0, 0}), line.normals.push_back({0, 0, 1});
+    oriented("line", line, 1);
+}
+
 TEST(Orientation, OpenSheetsPointUpAndHangTogether) {
     for (const uint32_t parts : {1u, 3u, 5u})
         EXPECT_GT(oriented("wavy sheet", wavy_sheet(20000), parts), 0.9999);

@@ -47,7 +47,24 @@ TEST(ScanNormals, FollowTheTruthIndoorsWithoutStations) {
         const Scan scan = scan_of(scene, 100000);
         for (const uint32_t parts : {1u, 3u}) {
             const Score s = print(std::string(scene) + ", no stations", scan.cloud, {}, parts);
-            EXPECT_GT(s.oriented, 0.97) << scene << " " << parts;
+            EXPECT_GT(s.oriented, 0.975) << scene << " " << parts;
+        }
+    }
+}
+
+/// Surfaces of all sides, as of a sampled mesh. What is below a statue or in a block has no side that is
+/// seen, and the truth has one.
+TEST(ScanNormals, FollowTheTruthOfEvenSamplesWithoutStations) {
+    const struct {
+        const char* scene;
+        double oriented;
+    } cases[] = {{"cornell", 0.998}, {"two-rooms", 0.96}, {"house", 0.98}, {"statue", 0.95}};
+    for (const auto& c : cases) {
+        Scan scan = scan_of(c.scene, 200000, true);
+        scan.cloud.stations.clear();
+        for (const uint32_t parts : {1u, 3u}) {
+            const Score s = print(std::string(c.scene) + ", even", scan.cloud, {}, parts);
+            EXPECT_GT(s.oriented, c.oriented) << c.scene << " " << parts;
         }
     }
 }
