@@ -207,7 +207,7 @@ size_t wave_end(const ChunkAccess& chunks, size_t first, size_t most, uint64_t m
 Result<OrientationSigns> estimate_normals(
     const ChunkAccess& chunks, const NormalOptions& options,
     const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink) {
-    OrientationMerger merger(OrientationDetail::of(chunks));
+    OrientationMerger merger(OrientationDetail::of(chunks, options.memory));
     const ChunkRange all{0, chunks.chunk_count()};
     LUCARNE_TRY(estimate_range(chunks, all, options, sink, [&](ChunkVotes&& votes) { merger.add(votes); }));
     return merger.signs();
@@ -223,7 +223,7 @@ Result<std::vector<BorderMessage>> estimate_range(
     const ThreadLimit threads(options.threads);
     ChunkCache cache(chunks, options.memory / 8);
     const double unit = 1 / cache.scale() / options.area_unit;
-    const auto detail = OrientationDetail::of(chunks);
+    const auto detail = OrientationDetail::of(chunks, options.memory);
     BorderMail mail(range.end, detail);
     for (size_t first = range.first, last; first < range.end; first = last) {
         last = wave_end(chunks, first, range.end, options.memory / 2);

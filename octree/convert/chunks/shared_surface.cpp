@@ -24,12 +24,13 @@ Bytes encode_votes(const std::vector<ChunkVotes>& chunks) {
 /// Joins the votes of all ranks. Returns the signs of the chunks in `own`; those of others are empty. A
 /// meeting.
 Result<OrientationSigns> join_votes(Ranks& ranks, const std::vector<ChunkVotes>& votes, ChunkRange own,
-                                    const ChunkAccess& access, const std::function<size_t(size_t)>& owner) {
+                                    const ChunkAccess& access, uint64_t memory,
+                                    const std::function<size_t(size_t)>& owner) {
     const size_t chunks = access.chunk_count();
     LUCARNE_ASSIGN(auto all, tell_first(ranks, encode_votes(votes)));
     std::vector<Bytes> parcels(ranks.count());
     if (ranks.rank() == 0) {
-        OrientationMerger merger(OrientationDetail::of(access));
+        OrientationMerger merger(OrientationDetail::of(access, memory));
         size_t chunk = 0;
         for (size_t rank = 0; rank < all.size(); ++rank) {
             ByteReader reader(all[rank]);
@@ -115,7 +116,7 @@ Result<void> SurfaceStore::estimate_together(const ChunkStore& chunks, const Chu
         all.insert(all.end(), known.begin(), known.end());
         known = std::move(all);
     }
-    LUCARNE_ASSIGN(signs_, join_votes(ranks, votes, own, access, owner));
+    LUCARNE_ASSIGN(signs_, join_votes(ranks, votes, own, access, options.memory, owner));
     return {};
 }
 

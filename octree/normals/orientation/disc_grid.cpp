@@ -13,7 +13,7 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr int kMostCells = 128;      ///< along an axis
+constexpr double kCells = 3.2;       ///< along the longest axis, times the cubic root of the number of discs
 constexpr float kMostRadius = 2;     ///< cells; larger discs would be in too many of them
 constexpr double kOutside = 0.001;   ///< share of the discs that may lie beyond each face of the grid
 constexpr size_t kMostTests = 4096;  ///< discs that a ray may meet in its cells
@@ -38,12 +38,13 @@ DiscGrid::DiscGrid(std::span<const SightDisc> discs) {
     for (size_t i = 0; i < discs.size(); ++i)
         values[i] = std::sqrt(kCoverageRaw * discs[i].area / std::numbers::pi);
     const glm::dvec3 extent = high - low;
+    const int most = static_cast<int>(kCells * std::cbrt(static_cast<double>(discs.size()))) + 3;
     const double cell =
-        std::max({quantile(values, 0.5), std::max({extent.x, extent.y, extent.z}) / (kMostCells - 2),
+        std::max({quantile(values, 0.5), std::max({extent.x, extent.y, extent.z}) / (most - 2),
                   std::numeric_limits<double>::min()});
     const glm::dvec3 origin = low - cell;
     for (int axis = 0; axis < 3; ++axis)
-        size_[axis] = std::min(kMostCells, static_cast<int>(extent[axis] / cell) + 3);
+        size_[axis] = std::min(most, static_cast<int>(extent[axis] / cell) + 3);
 
     at_.resize(discs.size());
     normal_.resize(discs.size());
@@ -89,8 +90,9 @@ void DiscGrid::each_cell(size_t disc, const Use& use) const {
 
 DiscGrid::Hit DiscGrid::first(const glm::vec3& from, const glm::vec3& direction, uint32_t own) const {
     Hit hit;
-    if (!inside(glm::ivec3(glm::floor(glm::clamp(from, -1.0f, static_cast<float>(kMostCells)))))) return hit;
-    glm::ivec3 cell(glm::floor(from)), move;
+    // Cells that are far outside are no integers.
+    glm::ivec3 cell(glm::floor(glm::clamp(from, glm::vec3(-1.0f), glm::vec3(size_)))), move;
+    if (!inside(cell)) return hit;
     glm::vec3 next, step;  // distances to the next cell along each axis
     for (int axis = 0; axis < 3; ++axis) {
         const float along = std::max(std::abs(direction[axis]), 1e-12f),

@@ -168,12 +168,15 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
     return orientation;
 }
 
-OrientationDetail OrientationDetail::of(const ChunkAccess& chunks) {
-    constexpr uint64_t kLeastPatch = 64, kPatches = 16384, kDiscs = 65536;
+OrientationDetail OrientationDetail::of(const ChunkAccess& chunks, uint64_t memory) {
+    constexpr uint64_t kLeastPatch = 64, kMostPatches = 16384, kMostDiscs = 65536;
+    constexpr uint64_t kPatchMemory = 8192, kDiscMemory = 1024;  // bytes of `memory` for each of them
+    const uint64_t patches = std::clamp<uint64_t>(memory / kPatchMemory, 1, kMostPatches),
+                   discs = std::clamp<uint64_t>(memory / kDiscMemory, 1, kMostDiscs);
     uint64_t points = 0;
     for (size_t chunk = 0; chunk < chunks.chunk_count(); ++chunk) points += chunks.point_count(chunk);
-    return {static_cast<size_t>(std::max(kLeastPatch, points / kPatches)),
-            static_cast<size_t>(points / kDiscs + 1)};
+    return {static_cast<size_t>(std::max(kLeastPatch, points / patches)),
+            static_cast<size_t>(points / discs + 1)};
 }
 
 void VoteSums::add(const ComponentVote& vote) {
@@ -292,10 +295,8 @@ bool OrientationMerger::in_doubt() const {
     return static_cast<double>(without) > kInDoubt * static_cast<double>(discs_.size());
 }
 
-std::vector<bool> OrientationMerger::inside_out(SignedForest& forest) const {
+std::vector<bool> OrientationMerger::inside_out(SignedForest& forest, SignedForest& surfaces) const {
     const auto count = static_cast<uint32_t>(components_.size());
-    SignedForest surfaces(count);
-    votes_.each([&](uint32_t a, uint32_t b) { surfaces.unite(a, b, false); });
     std::vector<Shell> wholes(count);  // in the orientation of the root of `forest`
     for (uint32_t c = 0; c < count; ++c)
         wholes[surfaces.find(c).node].join(components_[c].shell, forest.find(c).opposite);
@@ -309,20 +310,19 @@ std::vector<bool> OrientationMerger::inside_out(SignedForest& forest) const {
     return turned;
 }
 
-OrientationSigns OrientationMerger::signs() const {
+OrientationSigns OrientationMerger::signs() {
     const auto count = static_cast<uint32_t>(components_.size());
     SignedForest forest(count + 1);  // the last node represents the stations
     for (uint32_t c = 0; c < count; ++c)
         if (components_[c].anchored) forest.unite(c, count, false);
-    if (in_doubt()) {
-        SignVotes votes = votes_;
-        vote_by_sight(discs_, detail_.disc, votes);
-        votes.unite(forest, kRounds);
-    } else {
-        votes_.unite(forest);
-    }
+    SignedForest surfaces(count);
+    votes_.each([&](uint32_t a, uint32_t b) { surfaces.unite(a, b, false); });
+    const bool doubtful = in_doubt();
+    if (doubtful) vote_by_sight(discs_, detail_.disc, votes_);
+    std::vector<SightDisc>().swap(discs_);
+    votes_.unite(forest, doubtful ? kRounds : 1);
 
-    const auto turned = inside_out(forest);
+    const auto turned = inside_out(forest, surfaces);
     const auto stations = forest.find(count);
     OrientationSigns signs(first_component_.size() - 1);
     for (size_t chunk = 0; chunk < signs.size(); ++chunk) {

@@ -41,8 +41,8 @@ struct ChunkOrientation {
 struct OrientationDetail {
     size_t patch = 64;  ///< sites of a patch
     size_t disc = 1;    ///< sites for which a SightDisc stands
-    /// At most some ten thousand patches and discs in all.
-    static OrientationDetail of(const ChunkAccess& chunks);
+    /// So many patches and discs in all as take a small part of the memory, and some ten thousand at most.
+    static OrientationDetail of(const ChunkAccess& chunks, uint64_t memory);
 };
 
 /// Propagates orientation along a minimum spanning forest of the neighbourhood graph. On smooth surfaces it
@@ -134,14 +134,16 @@ class OrientationMerger {
 
     /// Returns +1 (keep) or -1 (flip) for every chunk and component. Connected surfaces that no station
     /// anchors are flipped as a whole to face the side that was seen, which their shape tells (Shell).
-    OrientationSigns signs() const;
+    /// Call once.
+    OrientationSigns signs();
 
  private:
     /// Whether no station tells which side was seen of a part of the surface that counts.
     bool in_doubt() const;
     /// Returns for each root of `forest` whether its shapes say that it is inside out. Each connected surface
-    /// has a say: two rooms that see each other's outer sides do not look like a room together.
-    std::vector<bool> inside_out(SignedForest& forest) const;
+    /// has a say: two rooms that see each other's outer sides do not look like a room together. `surfaces`:
+    /// the components that edges connect.
+    std::vector<bool> inside_out(SignedForest& forest, SignedForest& surfaces) const;
 
     std::vector<uint32_t> first_component_{0};  ///< of each chunk added so far, and the end
     std::vector<ChunkVotes::Component> components_;
