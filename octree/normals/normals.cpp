@@ -154,6 +154,12 @@ float in_squares(float area, double length) {
     return static_cast<float>(std::clamp(area * length * length, kLeast, kMost));
 }
 
+/// Returns PointEdge::narrowed, for what narrow_at_corners does where no station tells outer edges from
+/// corners.
+uint8_t narrowed(float most_area, float area) {
+    return most_area < area ? static_cast<uint8_t>(std::max(1.0f, std::round(255 * most_area / area))) : 255;
+}
+
 /// Converts results from sites to points, in their stored order. The points of a site share its area. `unit`
 /// is the length unit of the estimate's areas, in the wanted unit. `sites_too`: also site_normals.
 ChunkNormals points_of(const ChunkEstimate& estimate, double unit, bool sites_too) {
@@ -179,7 +185,8 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit, bool sites_to
         for (; line != estimate.surface.lines.end() && line->site == site; ++line)
             if (normal != glm::vec3(0.0f))
                 edge = {encode_edge(normal, {line->toward, line->distance / std::sqrt(area)}),
-                        glm::dot(line->normal, normal) < 0 ? turned(line->beyond) : line->beyond};
+                        glm::dot(line->normal, normal) < 0 ? turned(line->beyond) : line->beyond,
+                        narrowed(line->most_area, estimate.surface.areas[site])};
         for (const uint32_t point : members) {
             normals.normals[point] = normal;
             if (sites_too) normals.site_normals[point] = estimate.surface.normals[site];

@@ -82,7 +82,12 @@ inline constexpr float kStrayArea = 1e-30f;
 struct PointEdge {
     EdgeCode code = kNoEdge;  ///< for the point's normal and area
     Beyond beyond = Beyond::nothing;
+    uint8_t narrowed = 255;  ///< share of the area that the point keeps at an outer edge, in 1/255
+
+    /// Returns the share of the area that the point keeps, as soon as `beyond` is known for good.
+    float kept() const { return beyond == Beyond::falls ? static_cast<float>(narrowed) / 255 : 1.0f; }
 };
+static_assert(sizeof(PointEdge) == 4);
 
 /// The result for one chunk, in the order of its positions.
 struct ChunkNormals {

@@ -32,17 +32,23 @@ RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface
       area_(schema_.find(io::names::area)),
       edge_(schema_.find(io::names::edge_line)) {}
 
+PointEdge RecordLoader::drawn_edge(const SurfaceStore::Point& found, const std::byte* record) const {
+    PointEdge edge = found.edge;
+    if (glm::dot(drawn_normals_.of(record), found.normal) < 0) edge.beyond = turned(edge.beyond);
+    return edge;
+}
+
 void RecordLoader::put_edge(const SurfaceStore::Point& found, std::byte* record) const {
-    EdgeCode code = found.edge.code;
-    if (code != kNoEdge) {
-        const glm::vec3 drawn = drawn_normals_.of(record);
-        const bool other_way = glm::dot(drawn, found.normal) < 0;
-        const Beyond beyond = other_way ? turned(found.edge.beyond) : found.edge.beyond;
-        code = beyond == Beyond::rises
-                   ? kNoEdge
-                   : rebased_edge(code, {found.normal, found.area}, {drawn, area(record)});
+    PointEdge edge = found.edge;
+    if (edge.code != kNoEdge) {
+        edge = drawn_edge(found, record);
+        if (edge.beyond == Beyond::rises)
+            edge.code = kNoEdge;
+        else
+            edge.code = rebased_edge(edge.code, {found.normal, found.area},
+                                     {drawn_normals_.of(record), area(record)});
     }
-    io::store(record + edge_->offset, code);
+    io::store(record + edge_->offset, edge.code);
 }
 
 Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, uint64_t count) const {
@@ -62,7 +68,8 @@ Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, 
         std::memcpy(record, &input[i * stride], kept);
         if (normal_ && (!in_place || io::load<NormalCode>(record + normal_->offset) == kNoNormal))
             io::store(record + normal_->offset, encode_normal(splats_.normal(record, found[i].normal)));
-        const float area = splats_.area(record, found[i].area, face);
+        const float share = found[i].edge.narrowed < 255 ? drawn_edge(found[i], record).kept() : 1;
+        const float area = splats_.area(record, share * found[i].area, face);
         if (!in_place || area > 0) io::store(record + area_->offset, encode_area(area, kFace));
         if (edge_) put_edge(found[i], record);
     }

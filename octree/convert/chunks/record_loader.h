@@ -30,6 +30,8 @@ class RecordLoader {
     float area(const std::byte* record) const;
 
  private:
+    /// Returns the edge of a point, seen from the side to which the normal in its record points.
+    PointEdge drawn_edge(const SurfaceStore::Point& found, const std::byte* record) const;
     /// Writes the line of a point whose normal and area have been written.
     void put_edge(const SurfaceStore::Point& found, std::byte* record) const;
 

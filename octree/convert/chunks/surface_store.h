@@ -16,7 +16,6 @@ class SurfaceStore {
         float area = 0;          ///< in faces of the root cube before it was doubled; 0: unknown
         uint32_t component = 0;
         PointEdge edge;
-        uint8_t unused = 0;  ///< in place of padding, which checksums would include
     };
     struct Settings {
         bool normals = true;  ///< false: the input's are kept

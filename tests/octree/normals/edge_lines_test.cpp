@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -163,6 +164,50 @@ TEST(EdgeLines, ScansWithoutStationsHaveThem) {
         EXPECT_GE(outline.right, stated ? 0.95 : 0.93) << stated;
         EXPECT_LE(outline.short_of_it, 0.005) << stated;
     }
+}
+
+/// How far the discs at the four upper corners of the cube reach over its faces, m: the mean over their
+/// points.
+double reach_over_corners(const Cloud& cloud, const Estimate& found) {
+    double sum = 0;
+    size_t points = 0;
+    for (size_t i = 0; i < cloud.points.size(); ++i) {
+        const glm::dvec3 to_face = glm::min(cloud.points[i], 1.0 - cloud.points[i]);
+        if (std::max({to_face.x, to_face.y, 1 - cloud.points[i].z}) > 2 * kBoxSpacing) continue;
+        const double radius = surfel_radius(found.areas[i], 0), unit = std::sqrt(double{found.areas[i]});
+        const auto line = decode_edge(found.normals[i], found.edges[i].code);
+        const glm::dvec3 n(found.normals[i]), u = glm::normalize(glm::cross(n, glm::dvec3(.31, .52, .8))),
+                                              v = glm::cross(n, u);
+        double most = 0;
+        for (int ring = 1; ring <= 8; ++ring)
+            for (int step = 0; step < 32; ++step) {
+                const double turn = step * 2 * std::numbers::pi / 32, r = radius * ring / 8;
+                const glm::dvec3 offset = r * (std::cos(turn) * u + std::sin(turn) * v);
+                if (line && glm::dot(glm::dvec3(line->toward), offset) > line->distance * unit) continue;
+                const glm::dvec3 p = cloud.points[i] + offset, over = glm::max(-p, p - 1.0);
+                most = std::max({most, over.x, over.y, over.z});
+            }
+        sum += most;
+        ++points;
+    }
+    return sum / static_cast<double>(points);
+}
+
+/// A cube without its bottom, which is known to be seen from outside.
+TEST(EdgeLines, DiscsAtCornersAreNarrowWithoutStationsToo) {
+    const auto [box, options] = scanned(0, false);
+    Cloud open;
+    for (size_t i = 0; i < box.points.size(); ++i) {
+        if (box.normals[i].z < 0) continue;
+        open.points.push_back(box.points[i]);
+        open.normals.push_back(box.normals[i]);
+        open.stations.push_back(box.stations[i]);
+    }
+    const double with = reach_over_corners(open, estimate(open, options)),
+                 without = reach_over_corners(open, estimate(open));
+    std::printf("at corners discs reach %.4f m over the faces with stations, %.4f m without\n", with,
+                without);
+    EXPECT_LT(without, 1.45 * with);
 }
 
 TEST(EdgeLines, CornersOfARoomAreToldFromEdges) {

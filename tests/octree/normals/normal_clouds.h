@@ -98,7 +98,12 @@ inline Estimate estimate(const Cloud& cloud, const NormalOptions& options = {}, 
             whole.normals[members[i]] = sign * results[chunk].normals[i];
             whole.areas[members[i]] = results[chunk].areas[i];
             whole.edges[members[i]] = results[chunk].edges[i];
-            if (sign < 0) whole.edges[members[i]].beyond = turned(results[chunk].edges[i].beyond);
+            PointEdge& edge = whole.edges[members[i]];
+            if (sign < 0) edge.beyond = turned(edge.beyond);
+            const EdgeBase own{whole.normals[members[i]], whole.areas[members[i]]};
+            whole.areas[members[i]] *= edge.kept();
+            if (edge.kept() < 1)
+                edge.code = rebased_edge(edge.code, own, {own.normal, whole.areas[members[i]]});
         }
     }
     if (loaded_points) *loaded_points = chunks.loaded_points();
