@@ -65,13 +65,15 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
 /// of a room they end behind the other sides, and their size keeps the corner closed. The station tells which
 /// of the two it is.
 void narrow_at_corners(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
-    for (const SiteLine& line : surface.lines) {
+    for (SiteLine& line : surface.lines) {
         const glm::dvec3& ray = ray_of_site[line.site];
         const double facing = glm::dot(glm::dvec3(line.normal), ray);
         if (!(std::abs(facing) > kGrazing * glm::length(ray))) continue;
-        if ((facing > 0 ? line.beyond : turned(line.beyond)) != Beyond::falls) continue;
-        float& area = surface.areas[line.site];
-        area = std::min(area, line.most_area);
+        if ((facing > 0 ? line.beyond : turned(line.beyond)) == Beyond::falls) {
+            float& area = surface.areas[line.site];
+            area = std::min(area, line.most_area);
+        }
+        line.most_area = std::numeric_limits<float>::infinity();  // decided
     }
 }
 
