@@ -255,19 +255,20 @@ Result<void> Rewrite::find_surface() {
 }
 
 /// Aligns new normals with the old ones around them, which were oriented when more of the surface was known.
-/// Each component is flipped if most of its old points say so; components without old points follow all of
-/// them together. Those that a station saw face it already, whatever old points that no station saw say.
+/// What of a connected surface is in a chunk is flipped as a whole if most of its old points say so; without
+/// old points there it follows those of the surface in other chunks, else all old points. Components that a
+/// station saw face it already, whatever old points that no station saw say.
 Result<void> Rewrite::align_normals() {
     const auto* attribute = schema().find(io::names::normal_oct);
     const uint32_t stride = rebuilt_->schema().stride;
     const uint64_t piece = std::max<uint64_t>(1, memory_.batch_bytes / stride);
-    struct Vote {
-        int64_t balance = 0;
-        bool seen = false;  ///< a station saw points of it
+    struct Votes {
+        std::map<uint32_t, int64_t> balance;  ///< by connected surface
+        std::map<uint32_t, bool> seen;        ///< by component: whether a station saw points of it
     };
     const StationIds ids(change_.header.scans, rebuilt_->schema(), change_.header.estimated_stations);
     const ChunkRange own = rebuilt_->own();
-    std::vector<std::map<uint32_t, Vote>> votes(own.end - own.first);
+    std::vector<Votes> votes(own.end - own.first);
     int64_t all = 0;
     for (size_t chunk = own.first; chunk < own.end; ++chunk) {
         const uint64_t count = rebuilt_->chunks()[chunk].count;
@@ -276,25 +277,37 @@ Result<void> Rewrite::align_normals() {
             LUCARNE_ASSIGN(const auto records, rebuilt_->load(chunk, first, part));
             LUCARNE_ASSIGN(const auto found, surface_->load(chunk, first, part));
             for (size_t i = 0; i < part; ++i) {
-                auto& vote = votes[chunk - own.first][found[i].component];
+                Votes& own_votes = votes[chunk - own.first];
+                bool& seen = own_votes.seen[found[i].component];
                 const std::byte* record = &records[i * stride];
                 const auto old = decode_normal(io::load<NormalCode>(record + attribute->offset));
-                if (found[i].normal != glm::vec3(0.0f) && !vote.seen)
-                    vote.seen = ids.of(record) >= 0 || rebuilt_->estimated_station(record) >= 0;
+                if (found[i].normal != glm::vec3(0.0f) && !seen)
+                    seen = ids.of(record) >= 0 || rebuilt_->estimated_station(record) >= 0;
                 if (!old || found[i].normal == glm::vec3(0.0f)) continue;
                 const int side = glm::dot(*old, found[i].normal) < 0 ? -1 : 1;
-                vote.balance += side;
+                own_votes.balance[surface_->surface(chunk, found[i].component)] += side;
                 all += side;
             }
         }
     }
-    auto sum = static_cast<uint64_t>(all);  // sums of negative numbers are right modulo 2^64
-    LUCARNE_TRY(ranks_.sum({&sum, 1}));
-    all = static_cast<int64_t>(sum);
+    // Sums of negative numbers are right modulo 2^64.
+    uint64_t surfaces = 0;
+    for (const Votes& vote : votes)
+        if (!vote.balance.empty()) surfaces = std::max<uint64_t>(surfaces, vote.balance.rbegin()->first + 1);
+    LUCARNE_TRY(ranks_.sum({&surfaces, 1}));  // at least as many as any rank knows
+    std::vector<uint64_t> sums(surfaces + 1, 0);
+    sums.back() = static_cast<uint64_t>(all);
+    for (const Votes& vote : votes)
+        for (const auto& [surface, balance] : vote.balance) sums[surface] += static_cast<uint64_t>(balance);
+    LUCARNE_TRY(ranks_.sum(sums));
     for (size_t i = 0; i < votes.size(); ++i)
-        for (const auto& [component, vote] : votes[i])
-            if (!vote.seen && (vote.balance < 0 || (vote.balance == 0 && all < 0)))
-                surface_->turn(own.first + i, component);
+        for (const auto& [component, seen] : votes[i].seen) {
+            const uint32_t surface = surface_->surface(own.first + i, component);
+            int64_t balance = votes[i].balance[surface];
+            if (balance == 0 && surface < surfaces) balance = static_cast<int64_t>(sums[surface]);
+            if (balance == 0) balance = static_cast<int64_t>(sums.back());
+            if (!seen && balance < 0) surface_->turn(own.first + i, component);
+        }
     return {};
 }
 

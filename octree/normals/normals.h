@@ -100,8 +100,9 @@ struct ChunkNormals {
     std::vector<glm::vec3> site_normals;
 };
 
-/// signs[chunk][component]: +1 keeps, -1 flips the normals of that component.
-using OrientationSigns = std::vector<std::vector<int8_t>>;
+/// signs[chunk][component]: the number of the connected surface that the component is a part of, from 1;
+/// negative if the normals of the component have to be flipped.
+using OrientationSigns = std::vector<std::vector<int32_t>>;
 
 /// Estimates normals and areas of all chunks. Neighbours are found across chunk borders. `sink` receives each
 /// chunk when it is done (in any order, on any thread, one call a chunk). The returned signs complete the

@@ -337,7 +337,8 @@ void PathsEngine::add_indirect(Frame& frame) {
     const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
     // Lobes and rays need the points of each pixel.
     const uint32_t step = glossy || sky_rays ? 1 : frame.settings[kGatherEvery];
-    pixel_points_.begin(bake, frame.camera, texels, frame.bake_offset, step);
+    // Where rays move, more pixels look for points of their own (add_by_grid()).
+    pixel_points_.begin(bake, frame.camera, texels, frame.bake_offset, 2 * uint64_t{step} + (moved ? 1 : 0));
     if (step > 1) {
         add_by_grid(frame, materials, texels, step, moved, radiance);
     } else {

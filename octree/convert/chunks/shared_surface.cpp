@@ -51,7 +51,7 @@ Result<OrientationSigns> join_votes(Ranks& ranks, const std::vector<ChunkVotes>&
     LUCARNE_ASSIGN(const auto received, ranks.exchange(parcels));
     ByteReader reader(received[0]);
     OrientationSigns signs(chunks);
-    for (size_t chunk = own.first; chunk < own.end; ++chunk) signs[chunk] = reader.get_all<int8_t>();
+    for (size_t chunk = own.first; chunk < own.end; ++chunk) signs[chunk] = reader.get_all<int32_t>();
     return signs;
 }
 

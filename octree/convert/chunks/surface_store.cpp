@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -53,7 +54,12 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
 
 void SurfaceStore::turn(size_t chunk, uint32_t component) {
     if (chunk < signs_.size() && component < signs_[chunk].size())
-        signs_[chunk][component] = static_cast<int8_t>(-signs_[chunk][component]);
+        signs_[chunk][component] = -signs_[chunk][component];
+}
+
+uint32_t SurfaceStore::surface(size_t chunk, uint32_t component) const {
+    if (chunk >= signs_.size() || component >= signs_[chunk].size()) return 0;
+    return static_cast<uint32_t>(std::abs(signs_[chunk][component]));
 }
 
 void SurfaceStore::limit_strays() {
@@ -100,7 +106,7 @@ Result<SurfaceStore> SurfaceStore::restore(const ChunkStore& chunks, ScratchFile
     store.most_stray_area_ = reader.get<float>();
     const auto signed_chunks = reader.get<uint64_t>();
     for (uint64_t i = 0; i < signed_chunks && reader.sound(); ++i)
-        store.signs_.push_back(reader.get_all<int8_t>());
+        store.signs_.push_back(reader.get_all<int32_t>());
     if (!reader.sound() || sums.size() != store.sums_.size())
         return failed("normals", "have an incomplete record");
     store.sums_ = sums;

@@ -50,6 +50,8 @@ class SurfaceStore {
                                           ScratchFile file, const MemoryPlan& memory, Ranks& ranks);
     /// Flips the normals of one orientation component of a chunk.
     void turn(size_t chunk, uint32_t component);
+    /// Returns the number of the connected surface that a component of a chunk is a part of; 0: unknown.
+    uint32_t surface(size_t chunk, uint32_t component) const;
 
     /// Returns the points [first, first + count) of a chunk, with their normals oriented (if
     /// Settings::normals).

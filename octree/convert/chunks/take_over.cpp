@@ -53,7 +53,7 @@ Result<SurfaceStore> SurfaceStore::take_over(std::span<const Part> parts, const 
             writers[rank].put(uint64_t{i});
             writers[rank].put(from.sums_[i]);
             writers[rank].put(from.most_stray_area_);
-            writers[rank].put_all(i < from.signs_.size() ? from.signs_[i] : std::vector<int8_t>());
+            writers[rank].put_all(i < from.signs_.size() ? from.signs_[i] : std::vector<int32_t>());
         }
     LUCARNE_TRY(move_pieces(ranks, pieces, store.file_, store.end_ * sizeof(Point), memory.buffer_bytes));
     std::vector<Ranks::Bytes> parcels;
@@ -66,7 +66,7 @@ Result<SurfaceStore> SurfaceStore::take_over(std::span<const Part> parts, const 
             if (!chunks.own().contains(chunk)) return failed("normals", "arrived for another rank's chunk");
             store.sums_[chunk] = reader.get<uint64_t>();
             store.most_stray_area_ = reader.get<float>();
-            store.signs_[chunk] = reader.get_all<int8_t>();
+            store.signs_[chunk] = reader.get_all<int32_t>();
             if (!reader.sound()) return failed("normals", "arrived incomplete");
         }
     return store;

@@ -103,6 +103,9 @@ DiscGrid::Hit DiscGrid::first(const glm::vec3& from, const glm::vec3& direction,
     }
     for (size_t tests = 0; inside(cell);) {
         const size_t at = index(cell);
+        tests += starts_[at + 1] - starts_[at];
+        // Far clusters of discs make cells so large that one may hold all the others.
+        if (tests > kMostTests) return {kLost};
         for (uint32_t i = starts_[at]; i < starts_[at + 1]; ++i) {
             const uint32_t disc = members_[i];
             if (disc == own) continue;
@@ -112,10 +115,8 @@ DiscGrid::Hit DiscGrid::first(const glm::vec3& from, const glm::vec3& direction,
             const glm::vec3 off = from + distance * direction - at_[disc];
             if (glm::dot(off, off) < radius_[disc] * radius_[disc]) hit = {disc, distance, facing};
         }
-        tests += starts_[at + 1] - starts_[at];
         const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
         if (hit.distance <= next[axis]) break;
-        if (tests > kMostTests) return {kLost};
         cell[axis] += move[axis];
         next[axis] += step[axis];
     }

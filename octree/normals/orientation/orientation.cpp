@@ -332,7 +332,8 @@ OrientationSigns OrientationMerger::signs() {
             const auto root = forest.find(c);
             const bool whole = root.node == stations.node ? stations.opposite : turned[root.node];
             const bool turn = root.opposite != whole;
-            signs[chunk][c - first] = turn ? -1 : 1;
+            const auto surface = static_cast<int32_t>(surfaces.find(c).node) + 1;
+            signs[chunk][c - first] = turn ? -surface : surface;
         }
     }
     return signs;

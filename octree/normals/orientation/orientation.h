@@ -132,7 +132,7 @@ class OrientationMerger {
     /// Adds the next chunk, in ascending order. A chunk without points has no components.
     void add(const ChunkVotes& chunk);
 
-    /// Returns +1 (keep) or -1 (flip) for every chunk and component. Connected surfaces that no station
+    /// Returns for every chunk and component whether it has to be flipped. Connected surfaces that no station
     /// anchors are flipped as a whole to face the side that was seen, which their shape tells (Shell).
     /// Call once.
     OrientationSigns signs();

@@ -93,7 +93,7 @@ Patches divide_into_patches(const PatchGraph& graph, std::vector<glm::vec3>& nor
 
     Patches patches;
     patches.count = 0;
-    std::vector<uint32_t> numbers(count, kNone);  // a root comes before the others
+    std::vector<uint32_t> numbers(count, kNone);  // by piece
     for (uint32_t piece = 0; piece < count; ++piece) {
         uint32_t& number = numbers[forest.find(piece).node];
         if (number == kNone) number = patches.count++;

@@ -35,9 +35,9 @@ struct PatchGraph {
 };
 static_assert(kSiteEdges <= 8);
 
-/// Divides the sites into patches of at most `size` sites over which the normals turn little. Pieces that are
-/// far smaller join the neighbours with which they agree best, which may flip normals; the votes are those
-/// after that.
+/// Divides the sites into pieces of at most `size` sites over which the normals turn little. Pieces that are
+/// far smaller join the neighbours with which they agree best, as many as there are, which may flip normals;
+/// the votes are those after that.
 Patches divide_into_patches(const PatchGraph& graph, std::vector<glm::vec3>& normals, size_t size);
 
 }  // namespace lucarne::octree

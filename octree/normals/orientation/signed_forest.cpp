@@ -3,7 +3,8 @@
 namespace lucarne::octree {
 namespace {
 
-/// Limit on the votes and nodes that are checked again, so that no cloud takes more than a second or two.
+/// Limit on the votes and nodes that are checked again in all rounds together, so that no cloud takes more
+/// than a second or two.
 constexpr double kMostWork = 3e8;
 constexpr double kAgainst = -1e-6;  ///< sums below this contradict a link; smaller magnitudes are rounding
 
@@ -53,10 +54,9 @@ class Ballot {
     /// Each link divides its tree into two parts. Where the sum of all votes across it contradicts the link,
     /// flips the lower part. Repeats this, the clearest case first, until no link is contradicted.
     void revise() {
-        double work = 0;
-        for (uint32_t at = worst(); at != kNone && work < kMostWork; at = worst()) {
+        for (uint32_t at = worst(); at != kNone && work_ < kMostWork; at = worst()) {
             turn_below(at);
-            work += static_cast<double>(votes_.size() + nodes_.size());
+            work_ += static_cast<double>(votes_.size() + nodes_.size());
         }
     }
 
@@ -148,6 +148,7 @@ class Ballot {
     std::vector<std::vector<Link>> links_;
     std::vector<Node> nodes_;
     std::vector<uint32_t> order_;  ///< parents before children
+    double work_ = 0;              ///< of revise() so far, see kMostWork
 };
 
 }  // namespace

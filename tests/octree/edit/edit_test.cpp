@@ -278,6 +278,74 @@ TEST(Append, BesideTheOldKeepsTheSumOfAreas) {
     EXPECT_NEAR(after.area / 1800, 1, 0.05);
 }
 
+/// A rectangle of so many points.
+struct Sheet {
+    uint64_t points;
+    glm::dvec3 corner, u, v;
+};
+ComputedSource sheets(std::vector<Sheet> parts, uint64_t seed) {
+    io::Schema schema;
+    schema.position = io::PositionType::f32;
+    schema.stride = 12;
+    uint64_t all = 0;
+    for (const Sheet& part : parts) all += part.points;
+    return {schema, all, [=](uint64_t index, std::byte* record) {
+                Random random(seed, index);
+                uint64_t left = index;
+                size_t part = 0;
+                while (left >= parts[part].points) left -= parts[part++].points;
+                const double u = random.uniform(), v = random.uniform();
+                io::store(record, glm::vec3(parts[part].corner + u * parts[part].u + v * parts[part].v));
+            }};
+}
+
+/// Returns the share of the points of a cache before x = 61 whose normals point out of the box of [0, 60] x
+/// [0, 30] x [0, 20].
+double share_outward(const std::filesystem::path& path) {
+    const auto cache = opened(path);
+    const io::Schema& schema = cache->header().schema;
+    const auto* normal = schema.find(io::names::normal_oct);
+    double all = 0, outward = 0;
+    for (uint32_t node = 0; node < cache->nodes().size(); ++node) {
+        const auto data = cache->load(node);
+        for (size_t i = 0; data && i < data->count; ++i) {
+            const std::byte* record = &data->records[i * schema.stride];
+            const glm::dvec3 at = io::position_of(schema, record);
+            if (at.x > 61) continue;
+            const auto n = decode_normal(io::load<NormalCode>(record + normal->offset));
+            ++all;
+            // From the middle, in halves of the box's sizes: one of them is 1 on its sides.
+            const glm::dvec3 from = (at - glm::dvec3(30, 15, 10)) / glm::dvec3(30, 15, 10);
+            const glm::dvec3 size = glm::abs(from);
+            const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+            outward += n && (*n)[axis] * from[axis] > 0;
+        }
+    }
+    return outward / all;
+}
+
+// A level sheet faces upward. With floor and walls it is the ceiling of a room and faces downward, but its
+// old points keep their side, and the room follows them, whatever the old points of another surface say.
+TEST(Append, TurnsASurfaceAsAWholeToTheSideOfItsOldPoints) {
+    const TempFolder folder;
+    constexpr glm::dvec3 kO(0.0), kX(60, 0, 0), kY(0, 30, 0), kZ(0, 0, 20), kHalf(30, 0, 0);
+    constexpr glm::dvec3 kFar(200, 0, 0), kFarX(90, 0, 0);
+    const auto first = sheets({{20'000, kZ, kHalf, kY}, {60'000, kFar, kFarX, kY}}, 1);
+    const auto second = sheets({{20'000, kZ + kHalf, kHalf, kY},
+                                {40'000, kO, kX, kY},
+                                {26'000, kO, kX, kZ},
+                                {26'000, kY, kX, kZ},
+                                {13'000, kO, kY, kZ},
+                                {13'000, kX, kY, kZ},
+                                {20'000, kFar, kFarX, kY}},
+                               2);
+    ASSERT_TRUE(build({&first}, folder / "a.luc", NormalsMode::estimate));
+    ASSERT_GT(share_outward(folder / "a.luc"), 0.99);
+    const auto report = append_to_cache({&second}, edit(folder / "a.luc"));
+    ASSERT_TRUE(report) << report.error().line();
+    EXPECT_GT(share_outward(folder / "a.luc"), 0.97);
+}
+
 TEST(Delete, OfABoxLeavesTheOtherPointsInTheTreeOfAFreshBuild) {
     const TempFolder folder;
     const auto whole = patch(200'000, {0, 0}, 40, 1);

@@ -181,8 +181,7 @@ TEST(Orientation, BothFacesOfABoardInARoomAreSeenFromOutside) {
     for (const uint32_t parts : {1u, 3u}) EXPECT_GT(oriented("board in a room", scene, parts), 0.99);
 }
 
-/// No ray of a plane, of points at one place or of such a line hits anything; millions of points in a cell of
-/// the grid of rays end in bounded time.
+// Far outliers and a line, over which no ray hits anything.
 TEST(Orientation, CloudsWithoutInsideAndOutsideEnd) {
     Cloud far = sphere(20000);
     for (const double x : {1e6, -1e7}) append(far, plane(30), {x, x, x});
