@@ -94,7 +94,7 @@ inline Estimate estimate(const Cloud& cloud, const NormalOptions& options = {}, 
         const auto& members = chunks.members(chunk);
         EXPECT_EQ(results[chunk].normals.size(), members.size());
         for (size_t i = 0; i < members.size(); ++i) {
-            const float sign = (*signs)[chunk].at(results[chunk].components[i]);
+            const float sign = (*signs)[chunk].at(results[chunk].components[i]) < 0 ? -1.0f : 1.0f;
             whole.normals[members[i]] = sign * results[chunk].normals[i];
             whole.areas[members[i]] = results[chunk].areas[i];
             whole.edges[members[i]] = results[chunk].edges[i];
