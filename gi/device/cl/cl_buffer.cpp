@@ -28,7 +28,8 @@ Result<ClBuffer> ClBuffer::create(ClContext& context, size_t bytes, const std::b
         context.memory().give_back(bytes);
         LUCARNE_TRY(context.check_loss(problem));
         return failed(std::string(what),
-                      fmt::format("the OpenCL device has no {} MiB of memory left", bytes >> 20), kTodo);
+                      fmt::format("the OpenCL device has no {} KiB of memory left", (bytes + 1023) >> 10),
+                      kTodo);
     }
     ClBuffer made;
     made.context_ = &context;

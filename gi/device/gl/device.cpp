@@ -233,7 +233,8 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
     glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT | mapped);
     if (glGetError() != GL_NO_ERROR) {  // `made` returns nothing to the budget: its device_ is null
         state_->memory.give_back(bytes);
-        return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kMemoryTodo);
+        return failed(name, fmt::format("the device has no {} KiB of memory left", (bytes + 1023) >> 10),
+                      kMemoryTodo);
     }
     made.device_ = this;
     made.bytes_ = bytes;

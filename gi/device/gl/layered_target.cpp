@@ -69,7 +69,8 @@ Result<LayeredTarget> LayeredTarget::create(Device& device, const glm::ivec3& si
     glNamedFramebufferDrawBuffers(target.framebuffer_, static_cast<GLsizei>(attributes.size()),
                                   buffers.data());
     if (glGetError() != GL_NO_ERROR)
-        return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kLessMemory);
+        return failed(name, fmt::format("the device has no {} KiB of memory left", (bytes + 1023) >> 10),
+                      kLessMemory);
     if (glCheckNamedFramebufferStatus(target.framebuffer_, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         return failed(name, "the device cannot draw into layers of these formats", "choose --by area");
     return target;
