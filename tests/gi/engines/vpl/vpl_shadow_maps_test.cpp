@@ -280,6 +280,21 @@ TEST_P(NativeVplShadowMaps, NativeMapsAreThoseOfTheShaders) {
     EXPECT_LE(other_sources, drawn / 50);
 }
 
+// A million points at the place of a VPL took hours: each of them covered the whole map.
+TEST_P(NativeVplShadowMaps, HundredsOfDiscsOverOneMapAreAllDrawnAndThousandsAreNot) {
+    const auto distance = [&](size_t discs) {
+        std::vector<Surfel> surfels(discs, ceiling(3, 3, 1).front());
+        // The second along the curve through space is drawn in the middle of all (order_evenly()); the first
+        // is behind the VPL.
+        surfels[0].position.z = -2;
+        surfels[1].position.z = 2;
+        const Maps maps = draw(surfels, {upward()}, 64);
+        return map_distance(maps.at(0, maps.layout.side / 2, maps.layout.side / 2));
+    };
+    EXPECT_NEAR(distance(300), 2, .02);
+    EXPECT_NEAR(distance(4000), 3, .03);
+}
+
 INSTANTIATE_TEST_SUITE_P(Passes, NativeVplShadowMaps, ::testing::Values(true));
 INSTANTIATE_TEST_SUITE_P(Passes, VplShadowMaps, ::testing::Bool(),
                          [](const auto& native) { return native.param ? "native" : "shaders"; });

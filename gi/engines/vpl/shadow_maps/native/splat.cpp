@@ -29,6 +29,11 @@ namespace lucarne::gi::vpl::native {
 /// Maps that are drawn together: blocks are decoded once for all of them.
 constexpr uint32_t kGroup = 16;
 
+/// How often the discs of a map may cover it, counted by their boxes. Thinned discs cover it some ten times.
+/// A million discs at the place of a VPL would cover it a million times, so those that come later are left
+/// out.
+constexpr uint64_t kMostLayers = 512;
+
 /// Tables of the rays through the middles of a map's columns, u from -1 to 1; rows have the same. They save a
 /// division at each texel.
 struct MapColumns {
@@ -268,16 +273,20 @@ void DrawMaps(const SplatJob& job) {
     Casters casters, queued;
     MapDiscs discs;
     const size_t map_texels = size_t{job.layout.side} * job.layout.side;
+    uint64_t texels[kGroup] = {};  // in the boxes of what was drawn
     for (uint32_t block = 0; block < job.memory.blocks; ++block) {
         uint32_t met = cull(job, maps, block);
         if (met == 0) continue;
         decode_casters(job.memory.casters, job.tables, block, casters);
         for (; met; met &= met - 1) {
             const auto i = static_cast<uint32_t>(std::countr_zero(met));
+            if (texels[i] >= kMostLayers * map_texels) continue;
             const size_t count = enqueue(job, maps[i], casters, queued);
             for (size_t at = 0; at < count; at += hn::Lanes(Floats()))
                 for (uint32_t left = set_up(job, maps[i], queued, at, count, discs); left; left &= left - 1) {
                     const auto lane = static_cast<size_t>(std::countr_zero(left));
+                    texels[i] += static_cast<uint64_t>(discs.x1[lane] - discs.x0[lane] + 1) *
+                                 static_cast<uint64_t>(discs.y1[lane] - discs.y0[lane] + 1);
                     draw(job, discs, lane, queued.id[at + lane], (job.first_map + i) * map_texels);
                 }
         }
