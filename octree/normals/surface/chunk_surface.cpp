@@ -78,6 +78,10 @@ constexpr float kRoughSide = 0.5f;
 /// A crease may be none if the points beyond it lie so many spacings off a plane, as on a pipe. Else a border
 /// gives the line only if it is this much nearer: at the corner of a box both are there.
 constexpr float kDoubtful = 0.15f, kMuchNearer = 0.5f;
+/// A point farther from a dense patch than this many of the patch's spacings is too far for the patch's plane
+/// to tell; and for the plane of many of its points, whose normal must be known to kClearDeviation radians.
+/// Floors below scanners have up to .018 there, the piece of a cable that got a plate .03.
+constexpr float kMostApart = 10.0f, kMostApartOfMany = 20.0f, kClearDeviation = 0.02f;
 constexpr size_t kStepSites = 256;  ///< sites whose steps are compared: a piece of the Morton curve
 
 /// The median distance from one site to the next along the Morton curve, for each kStepSites sites.
@@ -132,6 +136,13 @@ class SiteEstimator {
         bool apart = false;
         if (!whole_cloud && is_stray(nearest, usual_, false)) {
             apart = goes_on_with(nearest);
+            if (!apart && is_near_enough(nearest, kMostApartOfMany)) {
+                // The nearest may all be of one scan line, through which many planes go.
+                around.nearest(kMostNearest, further_);
+                const double known = std::sqrt(double{further_.distance2[further_.count - 1]});
+                if (!around.knows(known)) return known;
+                apart = fitter_.lies_in_plane_of_others(further_, kClearDeviation);
+            }
             if (!apart) return leave_out(site);
         }
         const float reach2 = nearest.distance2[nearest.count - 1], reach = std::sqrt(reach2);
@@ -224,7 +235,7 @@ class SiteEstimator {
             return 0;
         }
         if (patch != &window_) seen = reach;  // at least
-        ShareCell cell(fit.normal, reach, nearest.count - 1, static_cast<float>(seen));
+        ShareCell cell(fit.normal, reach, nearest.count - 1, static_cast<float>(seen), apart);
         heights_over(*patch, fit.normal, heights_);
         const bool rough = side && side->first.roughness > kRoughSide * spacing;
         if (side && !rough) leave_to_other_sides(*side);
@@ -308,7 +319,7 @@ class SiteEstimator {
 
     /// Whether a point that looks isolated belongs to its neighbours' surface nevertheless.
     bool goes_on_with(const Patch& others) {
-        return is_near_enough(others) && fitter_.lies_in_plane_of_others(others);
+        return is_near_enough(others, kMostApart) && fitter_.lies_in_plane_of_others(others);
     }
 
     /// The distance between sites at the densest surface near a site, roughly.

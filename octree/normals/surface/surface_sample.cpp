@@ -38,8 +38,6 @@ constexpr float kSparserInDoubt = 5.0f;
 constexpr float kInPlane = 0.03f, kInNoise = 3.0f;
 /// But not higher than this share of its distance, however rough the patch is (17 degrees).
 constexpr float kMostHeight = 0.3f;
-/// A point farther from the patch than this many of the patch's spacings is too far for its plane to tell.
-constexpr float kMostApart = 10.0f;
 constexpr size_t kCompanions = 2;
 /// Coordinates are rounded in files (LAS: millimetres), so variances below this share of the largest are not
 /// trusted.
@@ -121,13 +119,13 @@ SurfaceFit SurfaceFitter::fit(const Patch& patch, float spacing) {
             v[2] > 0 ? static_cast<float>(v[1] / v[2]) : 0.0f};
 }
 
-bool SurfaceFitter::lies_in_plane_of_others(const Patch& patch) {
+bool SurfaceFitter::lies_in_plane_of_others(const Patch& patch, float most_deviation) {
     layer_.clear();
     layer_.make_room(patch.count);
     for (size_t i = 1; i < patch.count; ++i) layer_.push_back(patch.offset(i), patch.index[i]);
     layer_.pad();
     const Plane plane = plane_of(moments_of(layer_));
-    if (deviation_of(plane, layer_.count) > kGoodDeviation) return false;
+    if (deviation_of(plane, layer_.count) > most_deviation) return false;
     double height = 0;
     for (size_t i = 0; i < layer_.count; ++i) height += glm::dot(glm::dvec3(layer_.offset(i)), plane.normal);
     height /= static_cast<double>(layer_.count);
@@ -165,8 +163,8 @@ float share_of_neighbours(const Patch& nearest) {
     return std::numbers::pi_v<float> * *median / kTheirRank;
 }
 
-bool is_near_enough(const Patch& nearest) {
-    const float limit = kMostApart * kMostApart * share_of_neighbours(nearest);
+bool is_near_enough(const Patch& nearest, float most_apart) {
+    const float limit = most_apart * most_apart * share_of_neighbours(nearest);
     // The nearest few may be outliers together with it.
     return nearest.distance2[kCompanions] < limit &&
            nearest.distance2[std::min(kOwnRank, nearest.count - 1)] < 4 * limit;

@@ -43,8 +43,9 @@ class SurfaceFitter {
     SurfaceFit fit(const Patch& patch, float spacing);
     /// Heights over the plane of the last fit.
     const std::vector<float>& heights() const { return heights_; }
-    /// Whether the point lies in the plane of its neighbours as well as they do themselves.
-    bool lies_in_plane_of_others(const Patch& patch);
+    /// Whether the point lies in the plane of its neighbours as well as they do themselves. The standard
+    /// error of the plane's normal is at most `most_deviation`, radians.
+    bool lies_in_plane_of_others(const Patch& patch, float most_deviation = kGoodDeviation);
 
  private:
     std::vector<float> heights_;
@@ -62,6 +63,6 @@ bool may_stand_apart(const Patch& nearest, const Patch& window);
 /// it, because it has none of its own.
 float share_of_neighbours(const Patch& nearest);
 /// Whether an isolated point is near enough to its neighbours to belong to their surface.
-bool is_near_enough(const Patch& nearest);
+bool is_near_enough(const Patch& nearest, float most_apart);
 
 }  // namespace lucarne::octree

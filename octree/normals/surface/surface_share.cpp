@@ -46,11 +46,11 @@ TangentFrame tangent_frame(const glm::vec3& normal) {
     return {normal, x, glm::cross(normal, x)};
 }
 
-ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen)
+ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen, bool apart)
     : frame_(tangent_frame(normal)),
       reach_(reach),
       known_(kKnown * std::min(seen, kMostSeen * reach)),
-      widest_search_(kLook * reach),
+      widest_search_((apart ? 2 : 1) * kLook * reach),
       rim_spacing_(reach * std::sqrt(kPi / 2 / static_cast<float>(neighbours))),
       least_(2 / widest_search_) {
     nearness_.fill(least_);

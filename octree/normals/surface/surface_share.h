@@ -20,8 +20,9 @@ namespace lucarne::octree {
 class ShareCell {
  public:
     /// `reach`: distance of the farthest of the nearest `neighbours`. `seen`: the cell will be cut by all
-    /// points nearer than this. widest_search() tells how far to look for more.
-    ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen);
+    /// points nearer than this. widest_search() tells how far to look for more; `apart`: twice as far, for a
+    /// point that is far from its neighbours.
+    ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen, bool apart = false);
 
     /// Cuts the cell by the neighbours in the layer low .. high, or by all (`others`), which bounds the cell
     /// where the surface turns away. All `heights` are over the plane.

@@ -84,6 +84,37 @@ TEST(Air, SparseWallsBesideDenseFloorsAreWhole) {
     EXPECT_LE(through, 80) << "just above the floor; 186 if the floor's density bounds the wall's discs";
 }
 
+/// Below a scanner another one sees the floor sparsely. The points beside the first one's nearest scan line
+/// have only this line for neighbours, through which many planes go; they were left out, and the floor had
+/// slits there.
+TEST(Air, FloorsBelowAScannerHaveNoSlits) {
+    constexpr int kSparse = 300;
+    Random random(15);
+    Cloud cloud;
+    const auto add = [&](double radius, double angle) {
+        cloud.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle),
+                                  0.001 * gaussian(random));
+    };
+    for (double radius = 0.6; radius < 1.2; radius += 0.012)
+        for (double angle = 0; angle < 2 * std::numbers::pi; angle += 0.004 / radius) add(radius, angle);
+    const size_t first = cloud.points.size();
+    for (int i = 0; i < kSparse; ++i)
+        add(0.6 * std::sqrt(random.uniform()), 2 * std::numbers::pi * random.uniform());
+    cloud.normals.resize(cloud.points.size(), {0, 0, 1});
+    cloud.stations.resize(cloud.points.size(), 0);
+    const Estimate found = estimate(cloud);
+    const Drawn sparse = drawn(found, first, cloud.points.size());
+    const DiscScene discs(cloud, found);
+    int through = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const double radius = std::sqrt(random.uniform()), angle = 2 * std::numbers::pi * random.uniform();
+        through += !discs.cast(glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), 1), {0, 0, -1});
+    }
+    std::printf("%zu of %d sparse points drawn, %d of 5000 rays pass\n", sparse.count, kSparse, through);
+    EXPECT_GE(sparse.count, kSparse * 97u / 100);
+    EXPECT_LE(through, 12);
+}
+
 /// A pane has few points, in the plane of its wall or behind it. They keep their size: nothing is known
 /// better.
 TEST(Air, PointsOfAPaneStay) {
