@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kAlikePlanes = 0.94f;  ///< |n.n'| of two sites on one plane: 20 degrees
 constexpr float kAlikeLines = 0.94f;   ///< of the directions to two lines that are one
+constexpr float kAlikeToTurn = 0.8f;   ///< of the directions of lines that turn each other
 /// A line is handed on to sites from which it is at most that many times as far as from its own.
 constexpr float kHandedOn = 3.0f;
 
@@ -25,11 +26,31 @@ SiteLine seen_from(uint32_t other, const glm::vec3& n, const glm::dvec3& apart, 
     return seen;
 }
 
+/// Turns the lines of neighbours that run alike toward their mean direction. A site's own depends on where
+/// its few neighbours happen to lie.
+void turn_alike(const ChunkNeighbours& neighbours, const std::vector<uint32_t>& line_of,
+                ChunkSurface& surface) {
+    std::vector<glm::vec3> turned;
+    for (const SiteLine& line : surface.lines) {
+        glm::vec3 sum = line.toward;
+        for (const uint32_t other : surface.edges[line.site]) {
+            if (other == kNoSite || line_of[other] == kNoSite) continue;
+            const glm::dvec3 apart = neighbours.position(other) - neighbours.position(line.site);
+            const SiteLine seen = seen_from(line.site, line.normal, -apart, surface.lines[line_of[other]]);
+            if (!std::isnan(seen.distance) && glm::dot(seen.toward, line.toward) > kAlikeToTurn)
+                sum += seen.toward;
+        }
+        turned.push_back(glm::normalize(sum));
+    }
+    for (size_t i = 0; i < turned.size(); ++i) surface.lines[i].toward = turned[i];
+}
+
 }  // namespace
 
 void agree_on_lines(const ChunkNeighbours& neighbours, ChunkSurface& surface) {
     std::vector<uint32_t> line_of(surface.normals.size(), kNoSite);
     for (uint32_t i = 0; i < surface.lines.size(); ++i) line_of[surface.lines[i].site] = i;
+    turn_alike(neighbours, line_of, surface);
     std::vector<SiteLine> agreed, handed;
     for (const SiteLine& line : surface.lines) {
         std::array<float, kSiteEdges + 1> distances{line.distance};
