@@ -5,7 +5,7 @@ namespace lucarne::gi {
 Result<void> LitTree::set_surfels(Frame& frame) {
     tree_ = std::make_shared<SurfelTree>();
     lobes_ = {};
-    LUCARNE_TRY(lit_.set_surfels(frame));
+    LUCARNE_TRY(lit_.set_surfels(frame, Bare::of_planes));
     tree_ = std::make_shared<SurfelTree>(build_tree(lit_.surfels()));
     return {};
 }

@@ -12,8 +12,9 @@ namespace lucarne::gi {
 /// The surfels of a light cut, a tree over them, and the light that they send out before any bounce.
 class LitTree {
  public:
-    /// Takes the surfels of frame.gl.cuts.light and builds their tree. Drops the light. Errors: device
-    /// memory, a shader that fails.
+    /// Takes the surfels of frame.gl.cuts.light and builds their tree. Those of a scan that is being read
+    /// have the normals of planes (Bare::of_planes): without, nothing would be in the way of light. Drops the
+    /// light. Errors: device memory, a shader that fails.
     Result<void> set_surfels(Frame& frame);
     /// Computes what the surfels emit, and what they reflect of these views of the lights (LitSurfels).
     /// Errors likewise. Specular reflection is not in own_light() but in lobes().

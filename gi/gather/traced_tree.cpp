@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "gi/gl_frame.h"
+#include "gi/shared/surfel_code.h"
 
 namespace lucarne::gi {
 
@@ -24,6 +25,8 @@ Result<TracedTree> TracedTree::create(const Frame& frame, const LitTree& scene) 
         if (place == kNoSurfel) return;
         surfels[place] = surfel;
         surfels[place].area = tree.areas[traced.slot_of[place]];
+        if (surfel.normal == glm::vec3(0.0f))  // that of the plane about it
+            surfels[place].normal = decode_octahedral(scene.surfels()[id].normal);
     });
     size_t kept = 0;
     for (size_t i = 0; i < surfels.size(); ++i) {

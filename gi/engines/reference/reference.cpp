@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -9,6 +11,7 @@
 #include "gi/engines/reference/options.h"
 #include "gi/engines/reference/path_tracer.h"
 #include "gi/host_frame.h"
+#include "gi/surfels/plane_normals.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
 
@@ -79,7 +82,9 @@ void ReferenceEngine::update(const Changes& changes) {
 Result<void> ReferenceEngine::prepare(Frame& frame) {
     const TimedPass pass(frame, "surfels for tracing");
     if (!tracer_) {
-        LUCARNE_ASSIGN(tracer_, SurfelTracer::create(download_light_surfels(frame)));
+        std::vector<Surfel> surfels = download_light_surfels(frame);
+        add_normals_of_planes(surfels);  // of a scan that is being read: its walls would let light through
+        LUCARNE_ASSIGN(tracer_, SurfelTracer::create(std::move(surfels)));
         coverage_ = tracer_->coverage();
         log::info("reference: {} surfels, coverage {:.2f}", tracer_->surfels().size(), coverage_);
     }

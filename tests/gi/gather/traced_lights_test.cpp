@@ -71,10 +71,31 @@ TEST_F(TracedLightsTest, SurfelsWithoutNormalsCastShadows) {
     for (Surfel& surfel : scene_.surfels) surfel.normal = glm::vec3(0.0f);
     scene_.camera = scenes::look({.4f, .5f, .6f}, {1.5f, 1.4f, .8f}, 1.0f, 64);
     scene_.lights = {scenes::wide_sun({.2f, .3f, -1}, .01f, 10)};
-    EXPECT_LT(mean_luminance(render("volume").radiance), .01) << "the room is closed";
+    const std::string_view engines[] = {"volume", "micro", "environment", "reference"};
+    for (const std::string_view engine : engines)
+        EXPECT_LT(mean_luminance(render(engine).radiance), .01) << engine << ": the room is closed";
     for (Surfel& surfel : scene_.surfels)
         if (surfel.position.z > 1.9f) surfel.position.z += 100;
-    EXPECT_GT(mean_luminance(render("volume").radiance), .2) << "without its ceiling the sun shines into it";
+    for (const std::string_view engine : engines)
+        EXPECT_GT(mean_luminance(render(engine).radiance), .2)
+            << engine << ": without its ceiling the sun shines into it";
+}
+
+// And they reflect light: the sun shines through a hole in the ceiling onto the floor.
+TEST_F(TracedLightsTest, SurfelsWithoutNormalsReflectLight) {
+    scene_.surfels = scenes::closed_box(2, 60, glm::vec3(.6f));
+    std::erase_if(scene_.surfels, [](const Surfel& surfel) {
+        return surfel.position.z > 1.9f && glm::length(glm::vec2(surfel.position) - 1.0f) < .4f;
+    });
+    for (Surfel& surfel : scene_.surfels) surfel.normal = glm::vec3(0.0f);
+    scene_.camera = scenes::look({.4f, .5f, .6f}, {1.5f, 1.4f, .8f}, 1.0f, 32);
+    scene_.lights = {scenes::wide_sun({.2f, .3f, -1}, .01f, 10)};
+    scene_.settings.set(kOnlyBounce, 1);
+    const double truth = mean_luminance(render("reference").radiance);
+    EXPECT_GT(truth, .01);
+    EXPECT_NEAR(mean_luminance(render("environment").radiance) / truth, 1, .05);
+    // Its buffers look from pixels whose normals are the viewer's directions: half of them into the wall.
+    EXPECT_NEAR(mean_luminance(render("micro").radiance) / truth, 1, .15);
 }
 
 // What probing rays tell takes the place of rays: where a light is seen by all of them nothing changes, and
