@@ -284,6 +284,7 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
         buffers.tree_ == tree_ && std::ranges::equal(std::as_bytes(std::span(buffers.held_)), bytes))
         return {};
     buffers.count_ = 0;
+    ++buffers.drawing_;
     buffers.held_.assign(points.begin(), points.end());
     if (points.empty()) return {};
     LUCARNE_TRY(make_rays(device, grid, seed));

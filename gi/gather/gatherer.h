@@ -30,6 +30,8 @@ enum class Gathered : uint8_t { light_of_surfels, sky, both };
 class MicroBuffers {
  public:
     size_t count() const { return count_; }
+    /// How often they were drawn: the same number means the same buffers.
+    uint64_t drawing() const { return drawing_; }
     /// Whose buffers these are.
     std::span<const GatherPoint> points() const { return held_; }
     /// Returns what the pixels of all buffers see (gather_point.h), in order of the points. Errors: the
@@ -45,7 +47,7 @@ class MicroBuffers {
     std::vector<uint32_t> order_;    ///< numbers of the points in the order in which the device has them
     size_t count_ = 0;
     uint32_t grid_ = 0;
-    uint64_t seed_ = 0, tree_ = 0;
+    uint64_t seed_ = 0, tree_ = 0, drawing_ = 0;
 };
 
 /// Gathers the light of a tree of surfels at points, on an OpenCL device (gather.cl).

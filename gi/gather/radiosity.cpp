@@ -57,10 +57,15 @@ Result<std::vector<float>> nearness(ClDevice& device, Gatherer& gatherer, std::s
 
 Result<void> Radiosity::choose_places(ClDevice& device, const LitTree& scene, Gatherer& gatherer,
                                       uint32_t level, uint64_t seed, const std::atomic<bool>* stop) {
+    if (places_of_.tree.lock() == scene.kept_tree() && places_of_.level == level && places_of_.seed == seed)
+        return {};
+    places_of_ = {};
     const Places places = gi::choose_places(scene.tree(), scene.surfels(), size_t{1} << level, seed);
     points_ = sides_of(scene, places, seed);
     LUCARNE_ASSIGN(const auto near, nearness(device, gatherer, points_, seed, stop));
+    if (stop && *stop) return {};
     sides_ = assign_places(scene.tree(), scene.surfels(), places, near);
+    places_of_ = {scene.kept_tree(), level, seed};
     return {};
 }
 

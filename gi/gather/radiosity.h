@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,8 @@ namespace lucarne::gi {
 /// use the same micro-buffers, which are kept: drawing them takes longer than lighting them.
 class Radiosity {
  public:
-    /// Chooses at most 2^level places (places.h), others for each seed. Errors: the device failed.
+    /// Chooses at most 2^level places (places.h), others for each seed; does nothing if it has chosen these
+    /// of the same tree. Errors: the device failed.
     Result<void> choose_places(ClDevice& device, const LitTree& scene, Gatherer& gatherer, uint32_t level,
                                uint64_t seed, const std::atomic<bool>* stop = nullptr);
 
@@ -43,6 +45,14 @@ class Radiosity {
                         std::span<const GatherPoint> points, std::span<glm::vec3> gathered,
                         const std::atomic<bool>* stop);
 
+    /// What the places depend on.
+    struct Basis {
+        std::weak_ptr<const SurfelTree> tree;
+        uint32_t level = 0;
+        uint64_t seed = 0;
+    };
+
+    Basis places_of_;
     MicroBuffers buffers_;
     std::vector<GatherPoint> points_;  ///< two a place: its surfel's front and back
     std::vector<uint32_t> sides_;      ///< by side of surfels: the point that gathers for it (places.h)

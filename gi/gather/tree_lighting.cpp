@@ -181,11 +181,13 @@ Result<void> TreeLighting::trace_tree(Frame& frame) {
 }
 
 Result<void> TreeLighting::set_irradiance(std::span<const glm::vec3> irradiance, bool own) {
-    if (own_slots_.empty()) {
-        own_slots_ = pull_light(lit_.tree(), lit_.own_light());
+    if (own_slots_.empty()) own_slots_ = pull_light(lit_.tree(), lit_.own_light());
+    if (const std::pair basis(cuts_.light, scene_.materials); reflecting_of_ != basis) {
+        reflecting_of_.reset();
         std::vector<SideLight> reflectances;
         for (const glm::vec3& r : lit_.reflectances()) reflectances.push_back({r, r});
         reflecting_ = pull_light(lit_.tree(), reflectances);
+        reflecting_of_ = basis;
     }
     std::vector<SideLight> slots(own_slots_.size());
     parallel_ranges(slots.size(), kSlotsATask, [&](size_t first, size_t last) {

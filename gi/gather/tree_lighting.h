@@ -110,6 +110,7 @@ class TreeLighting {
     bool replaced_ = false;  ///< the gatherer has other light
     std::vector<SideLight> own_slots_,
         reflecting_;  ///< the surfels' own light, and their reflectances, pulled
+    std::optional<std::pair<uint64_t, uint64_t>> reflecting_of_;  ///< revisions of light cut and materials
 };
 
 }  // namespace lucarne::gi

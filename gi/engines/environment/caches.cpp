@@ -27,20 +27,6 @@ constexpr float kFlatness = 0.1f;
 /// Pixels with less weight than this in all are lonely.
 constexpr float kLeastSum = 0.02f;
 
-/// Returns how much a cache counts for a surface point, 0 to 1.
-float weight_of(const Cache& cache, const SurfacePoint& at) {
-    const glm::vec3 offset = at.position - cache.position;
-    const float distance2 = glm::dot(offset, offset), reach2 = cache.reach * cache.reach;
-    if (distance2 >= reach2) return 0;
-    const float agreement = glm::dot(cache.normal, at.normal);
-    if (agreement <= kLeastAgreement) return 0;
-    if (0.5f * glm::dot(offset, cache.normal + at.normal) < -kInFront * cache.reach - at.radius) return 0;
-    const float across = glm::dot(offset, cache.normal);
-    const float away = std::sqrt((distance2 + kAcross * kAcross * across * across) / reach2);
-    const float turned = std::sqrt(std::max(1 - agreement, 0.0f) / (1 - kLeastAgreement));
-    return std::max(1 - std::max(away, turned), 0.0f);
-}
-
 /// Local linear regression over a plane (Fan 1992, "Design-adaptive nonparametric regression"): fits a value
 /// at the origin and a slope to weighted values about it. A weighted mean is too low where all values lie on
 /// the darker side, as on a floor at the foot of a sunlit wall.
@@ -77,6 +63,20 @@ class LinearFit {
 
 }  // namespace
 
+/// Returns how much a cache counts for a surface point, 0 to 1.
+float CacheTiles::weight_of(const Place& cache, const SurfacePoint& at) {
+    const glm::vec3 offset = at.position - cache.position;
+    const float distance2 = glm::dot(offset, offset), reach2 = cache.reach * cache.reach;
+    if (distance2 >= reach2) return 0;
+    const float agreement = glm::dot(cache.normal, at.normal);
+    if (agreement <= kLeastAgreement) return 0;
+    if (0.5f * glm::dot(offset, cache.normal + at.normal) < -kInFront * cache.reach - at.radius) return 0;
+    const float across = glm::dot(offset, cache.normal);
+    const float away = std::sqrt((distance2 + kAcross * kAcross * across * across) / reach2);
+    const float turned = std::sqrt(std::max(1 - agreement, 0.0f) / (1 - kLeastAgreement));
+    return std::max(1 - std::max(away, turned), 0.0f);
+}
+
 template <class Body>
 void CacheTiles::for_each_tile(const Range& range, const Body& body) const {
     for (uint32_t row = range.upper; row < range.lower; ++row)
@@ -95,10 +95,12 @@ CacheTiles::CacheTiles(const CameraView& camera, std::span<const Cache> caches)
         for_each_tile(ranges.back(), [&](size_t tile) { ++starts_[tile + 1]; });
     }
     for (size_t tile = 1; tile < starts_.size(); ++tile) starts_[tile] += starts_[tile - 1];
-    numbers_.resize(starts_.back());
+    places_.resize(starts_.back());
     std::vector<size_t> next(starts_.begin(), starts_.end() - 1);
     for (uint32_t i = 0; i < caches.size(); ++i)
-        for_each_tile(ranges[i], [&](size_t tile) { numbers_[next[tile]++] = i; });
+        for_each_tile(ranges[i], [&](size_t tile) {
+            places_[next[tile]++] = {caches[i].position, caches[i].reach, caches[i].normal, i};
+        });
 }
 
 CacheTiles::Range CacheTiles::range_of(const CameraView& camera, const Cache& cache) const {
@@ -120,22 +122,25 @@ CacheTiles::Range CacheTiles::range_of(const CameraView& camera, const Cache& ca
             tile(place.y - radius, rows_), std::min(tile(place.y + radius, rows_) + 1, rows_)};
 }
 
-std::optional<LightByNormal> CacheTiles::light_at(const SurfacePoint& at, const glm::vec2& pixel) const {
+std::optional<LightByNormal> CacheTiles::light_at(const SurfacePoint& at, const glm::vec2& pixel,
+                                                  std::vector<Counting>& room) const {
     const auto tile = [](float place, uint32_t count) {
         return static_cast<size_t>(std::clamp(place / kTileSide, 0.0f, static_cast<float>(count - 1)));
     };
     const size_t number = tile(pixel.y, rows_) * columns_ + tile(pixel.x, columns_);
-    const auto counting = std::span(numbers_).subspan(starts_[number], starts_[number + 1] - starts_[number]);
     LinearFit fit(at.normal);
-    for (const uint32_t i : counting)
-        if (const float weight = weight_of(caches_[i], at); weight > 0)
-            fit.add(caches_[i].position - at.position, caches_[i].reach, weight);
+    room.clear();
+    for (const Place& place :
+         std::span(places_).subspan(starts_[number], starts_[number + 1] - starts_[number]))
+        if (const float weight = weight_of(place, at); weight > 0) {
+            room.push_back({place.cache, weight, place.position - at.position});
+            fit.add(room.back().offset, place.reach, weight);
+        }
     if (!(fit.weights() > kLeastSum)) return std::nullopt;
     fit.solve();
     LightByNormal sum{};
-    for (const uint32_t i : counting)
-        if (const float weight = weight_of(caches_[i], at); weight > 0)
-            sum.add(caches_[i].light, weight * fit.factor(caches_[i].position - at.position));
+    for (const Counting& counting : room)
+        sum.add(caches_[counting.cache].light, counting.weight * fit.factor(counting.offset));
     return sum;
 }
 
@@ -145,11 +150,12 @@ void smooth(const CameraView& camera, std::span<Cache> caches, std::span<const f
     const CacheTiles tiles(camera, wide);
     std::vector<LightByNormal> light(caches.size());
     parallel_ranges(caches.size(), kCachesAPiece, [&](size_t first, size_t last) {
+        std::vector<CacheTiles::Counting> room;
         for (size_t i = first; i < last; ++i) {
             const Cache& cache = caches[i];
             float depth = 0;
             const glm::vec2 pixel = view_place(camera, cache.position, depth);
-            light[i] = tiles.light_at({.position = cache.position, .normal = cache.normal}, pixel)
+            light[i] = tiles.light_at({.position = cache.position, .normal = cache.normal}, pixel, room)
                            .value_or(cache.light);
         }
     });
@@ -162,11 +168,12 @@ std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const Surf
     const CacheTiles tiles(camera, caches);
     std::vector<std::vector<uint32_t>> lonely((pixels.size() + kPixelsAPiece - 1) / kPixelsAPiece);
     parallel_ranges(pixels.size(), kPixelsAPiece, [&](size_t first, size_t last) {
+        std::vector<CacheTiles::Counting> room;
         for (size_t i = first; i < last; ++i) {
             const uint32_t pixel = pixels[i];
             const glm::vec2 at(static_cast<float>(pixel % camera.width),
                                static_cast<float>(pixel / camera.width));
-            const auto found = tiles.light_at(surfaces[pixel], at);
+            const auto found = tiles.light_at(surfaces[pixel], at, room);
             if (found)
                 light[pixel] = glm::vec4(found->on(surfaces[pixel].normal), 0);
             else

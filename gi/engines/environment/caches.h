@@ -31,10 +31,19 @@ class CacheTiles {
     /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. A slope is
     /// fitted to their light, because their mean is wrong where all of them lie on one side of the point.
     /// `pixel`: where it is seen if nothing hides it; the nearest place in the picture counts. Nothing if no
-    /// cache counts.
-    std::optional<LightByNormal> light_at(const SurfacePoint& at, const glm::vec2& pixel) const;
+    /// cache counts. `room`: for whoever asks often, to be given again.
+    struct Counting;
+    std::optional<LightByNormal> light_at(const SurfacePoint& at, const glm::vec2& pixel,
+                                          std::vector<Counting>& room) const;
 
  private:
+    /// What decides whether a cache counts, in the order in which it is asked for.
+    struct Place {
+        glm::vec3 position;
+        float reach;
+        glm::vec3 normal;
+        uint32_t cache;  ///< its number
+    };
     struct Range {
         uint32_t left = 0, right = 0, upper = 0, lower = 0;  ///< tiles; the last ones are not included
     };
@@ -44,8 +53,16 @@ class CacheTiles {
 
     std::span<const Cache> caches_;
     uint32_t columns_, rows_;
-    std::vector<size_t> starts_;  ///< of each tile's caches in numbers_, and the end
-    std::vector<uint32_t> numbers_;
+    std::vector<size_t> starts_;  ///< of each tile's caches in places_, and the end
+    std::vector<Place> places_;
+    static float weight_of(const Place& cache, const SurfacePoint& at);
+};
+
+/// A cache that counts for a point, and how much.
+struct CacheTiles::Counting {
+    uint32_t cache;
+    float weight;
+    glm::vec3 offset;  ///< from the point, m
 };
 
 /// Lets caches share their light with those about them, as pixels do, against the noise of their few rays.

@@ -1,8 +1,10 @@
 #include "gi/engines/environment/environment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -84,7 +86,7 @@ class EnvironmentEngine final : public Engine {
     Result<void> find_bright(Frame& frame, std::span<const SurfacePoint> surfaces);
     Result<std::vector<Cache>> gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
                                          std::span<const uint32_t> pixels, float spacing, Gathered what,
-                                         std::span<glm::vec4> light);
+                                         std::span<glm::vec4> light, MicroBuffers& buffers);
     Result<void> repair(Frame& frame, std::span<const SurfacePoint> surfaces, std::vector<uint32_t> lonely,
                         Gathered what, std::vector<glm::vec4>& light);
     Result<void> follow(Frame& frame);
@@ -93,9 +95,19 @@ class EnvironmentEngine final : public Engine {
 
     void report(Frame& frame, double share);
 
+    /// What the choice of secondary points depends on, beside the tree that micro-buffers belong to.
+    struct SecondariesOf {
+        uint64_t buffers;  ///< MicroBuffers::drawing()
+        CameraView camera;
+        float spacing;
+        bool operator==(const SecondariesOf&) const = default;
+    };
+
     TreeLighting lighting_;
-    MicroBuffers buffers_, secondary_buffers_, repairs_;
+    MicroBuffers buffers_, secondary_buffers_;
+    std::array<MicroBuffers, 2> repairs_;  ///< of lonely pixels: of some of them, and of what is left
     Secondaries secondaries_;
+    std::optional<SecondariesOf> secondaries_of_;
     std::vector<Cache> caches_;
     KeptCaches kept_;
     bool lit_ = false;  ///< the light that surfels send out is there: the last frame was finished
@@ -104,7 +116,7 @@ class EnvironmentEngine final : public Engine {
     const BrightLight* bright_ = nullptr;    ///< likewise, of what surfels send out
     std::vector<LightByNormal> sky_;         ///< what primary points receive of it in the frame
     uint64_t seed_ = 0;
-    size_t primaries_ = 0, gathering_ = 0, repaired_ = 0, reported_ = 0;
+    size_t primaries_ = 0, seen_ = 0, known_ = 0, gathering_ = 0, repaired_ = 0, reported_ = 0;
 };
 
 /// What pixels show: of the light that surfels send out, and of the sky.
@@ -174,15 +186,19 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
     const SurfelTree& tree = lighting_.lit().tree();
     {
         const TimedPass pass(frame, "secondary points");
+        const float spacing = kCoarser * relative_side(frame.camera) * static_cast<float>(s[kCacheSpacing]);
+        const SecondariesOf basis{buffers_.drawing(), frame.camera, spacing};
         if (s[kBruteForce]) {
             secondaries_.choose_all(tree);
-        } else {
-            const float spacing =
-                kCoarser * relative_side(frame.camera) * static_cast<float>(s[kCacheSpacing]);
+            secondaries_of_.reset();
+        } else if (secondaries_of_ != basis) {
             LUCARNE_ASSIGN(const auto seen, buffers_.seen());
             secondaries_.choose(tree, seen,
                                 [&](size_t slot) { return shares_light(tree, slot, frame.camera, spacing); });
+            secondaries_of_ = basis;
         }
+        seen_ = secondaries_.seen();
+        known_ = secondaries_.sides().size();
     }
     caches_.clear();
     if (!s[kBruteForce]) LUCARNE_TRY(add_caches(frame, primaries, arriving));
@@ -198,6 +214,7 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
     const TimedPass pass(frame, "light at secondary points");
     const CameraView& camera = frame.camera;
     const CacheTiles tiles(camera, caches_);
+    std::vector<CacheTiles::Counting> room;
     std::vector<glm::vec3> irradiances(sides.size(), glm::vec3(0.0f));
     std::vector<GatherPoint> points;
     std::vector<size_t> places;
@@ -208,7 +225,7 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
         if (depth > 0 || is_parallel(camera)) {
             const SurfacePoint surface{
                 .position = place.position, .normal = place.normal, .radius = place.radius};
-            if (const auto found = tiles.light_at(surface, at)) {
+            if (const auto found = tiles.light_at(surface, at, room)) {
                 irradiances[i] = kPi * found->on(place.normal);
                 continue;
             }
@@ -317,9 +334,11 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
 }
 
 /// Gathers the light of these pixels, about `spacing` pixels apart. Returns caches for those between them.
+/// `buffers` are kept for the same pixels under other light, if they are few enough.
 Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
                                                         std::span<const uint32_t> pixels, float spacing,
-                                                        Gathered what, std::span<glm::vec4> light) {
+                                                        Gathered what, std::span<glm::vec4> light,
+                                                        MicroBuffers& buffers) {
     const CameraView& camera = frame.camera;
     std::vector<Cache> caches;
     for (size_t first = 0; first < pixels.size(); first += kRepairsAtOnce) {
@@ -332,9 +351,9 @@ Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<
             points.back().viewer = at.viewer;
         }
         LUCARNE_TRY(lighting_.gatherer().see(lighting_.opencl(), points, frame.settings[kMicroBuffer], seed_,
-                                             repairs_, frame.stop));
+                                             buffers, frame.stop));
         if (frame.stopped()) break;
-        LUCARNE_ASSIGN(const auto gathered, shade(frame, what, repairs_));
+        LUCARNE_ASSIGN(const auto gathered, shade(frame, what, buffers));
         for (size_t i = 0; i < gathered.size(); ++i) {
             const SurfacePoint& at = surfaces[some[i]];
             light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
@@ -356,8 +375,8 @@ Result<void> EnvironmentEngine::repair(Frame& frame, std::span<const SurfacePoin
     const TimedPass pass(frame, "lonely pixels");
     for (const uint32_t spacing : {kRepairSpacing, 1u}) {
         const std::vector<uint32_t> chosen = every(spacing, frame.camera, lonely);
-        LUCARNE_ASSIGN(const auto caches,
-                       gather_at(frame, surfaces, chosen, static_cast<float>(spacing), what, light));
+        LUCARNE_ASSIGN(const auto caches, gather_at(frame, surfaces, chosen, static_cast<float>(spacing),
+                                                    what, light, repairs_[spacing == 1 ? 1 : 0]));
         if (frame.stopped()) return {};
         if (spacing == 1) continue;
         lonely = interpolate(frame.camera, surfaces, lonely, caches, light);
@@ -443,8 +462,8 @@ Result<void> EnvironmentEngine::follow(Frame& frame) {
         uint32_t spacing = kRepairSpacing;
         std::vector<uint32_t> chosen = every(spacing, frame.camera, lonely);
         while (chosen.size() > kRepairsInMotion) chosen = every(spacing *= 2, frame.camera, lonely);
-        LUCARNE_ASSIGN(const auto caches,
-                       gather_at(frame, surfaces, chosen, static_cast<float>(spacing), what, light));
+        LUCARNE_ASSIGN(const auto caches, gather_at(frame, surfaces, chosen, static_cast<float>(spacing),
+                                                    what, light, repairs_[0]));
         if (frame.stopped()) return {};
         lonely = interpolate(frame.camera, surfaces, lonely, caches, light);
         kept_.add(caches);
@@ -461,8 +480,7 @@ Result<void> EnvironmentEngine::render(Frame& frame) {
     sky_.clear();
     frame.gl.radiance.clear(0);
     seed_ = mix64(frame.settings[kSeed], frame.index);
-    primaries_ = gathering_ = repaired_ = reported_ = 0;
-    secondaries_ = {};
+    primaries_ = seen_ = known_ = gathering_ = repaired_ = reported_ = 0;
     const bool direct = wants_direct(frame.settings);
     if (wants_indirect(frame.settings) || (direct && lighting_.has_sky())) {
         const bool in_parts = frame.moving && !frame.light_budget.whole();
@@ -479,8 +497,8 @@ Result<void> EnvironmentEngine::render(Frame& frame) {
 std::vector<std::pair<std::string, double>> EnvironmentEngine::stats() const {
     return {{"surfels", lighting_.lit().tree().leaves},
             {"primary_points", primaries_},
-            {"secondary_points", secondaries_.seen()},
-            {"after_up", secondaries_.sides().size()},
+            {"secondary_points", seen_},
+            {"after_up", known_},
             {"after_down", gathering_},
             {"lonely_pixels", repaired_}};
 }

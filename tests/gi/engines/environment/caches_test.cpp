@@ -30,7 +30,8 @@ const CameraView kCamera = scenes::look({0, 0, 5}, {0, 0, 0}, 0.5f, 64);
 std::optional<glm::vec3> light_at(std::span<const Cache> caches, const SurfacePoint& at) {
     float depth = 0;
     const glm::vec2 pixel = view_place(kCamera, at.position, depth);
-    const auto found = CacheTiles(kCamera, caches).light_at(at, pixel);
+    std::vector<CacheTiles::Counting> room;
+    const auto found = CacheTiles(kCamera, caches).light_at(at, pixel, room);
     if (!found) return std::nullopt;
     return found->on(at.normal);
 }
@@ -66,7 +67,8 @@ TEST(Caches, LightAtTheEndOfASlopeIsNotThatOfItsMiddle) {
                                           0.5f * metre));
         for (const glm::vec3& normal : {glm::vec3(0, 0, 1), glm::normalize(glm::vec3(0.1f, 0.2f, 1))}) {
             const SurfacePoint at{.position = glm::vec3(0), .normal = normal};
-            const auto found = CacheTiles(kCamera, caches).light_at(at, {32, 32});
+            std::vector<CacheTiles::Counting> room;
+            const auto found = CacheTiles(kCamera, caches).light_at(at, {32, 32}, room);
             ASSERT_TRUE(found) << metre;
             EXPECT_NEAR(found->on(normal).x, 2, 0.05) << metre << ": the mean is 1.7";
         }

@@ -105,6 +105,38 @@ TEST_F(EnvironmentMotion, AFrameThatWasGivenUpLeavesTheLightOfTheOneBefore) {
     EXPECT_LT(difference(picture(*other, aside_), in_motion(*engine, aside_)), 0.1);
 }
 
+// Places, micro-buffers and reflectances stay while only lights change.
+TEST_F(EnvironmentMotion, UnderOtherLightItShowsWhatANewEngineShows) {
+    auto sky = std::make_shared<Environment>();
+    sky->width = sky->height = 1;
+    sky->texels = {glm::vec3(2)};
+    options_.environment = sky;
+    options_.settings.set(kBounces, 3);
+    std::vector<Surfel> open = scenes::closed_box(2, 60, glm::vec3(.6f));
+    std::erase_if(open, [](const Surfel& s) {
+        return s.position.z > 1.9f && glm::length(glm::vec2(s.position) - 1.0f) < .3f;
+    });
+    const auto loaded = load_cloud(*device, SurfelCloud(open));
+    ASSERT_TRUE(loaded) << loaded.error().line();
+    const auto draw = [&](Engine& engine) {
+        auto lit = draw_frame(*device, engine, (*loaded)->pool, (*loaded)->cut,
+                              look({.3f, .4f, .5f}, ahead_, 64, 48), *options_.bounds, options_);
+        EXPECT_TRUE(lit) << lit.error().line();
+        return lit ? lit->radiance : std::vector<glm::vec4>();
+    };
+    auto engine = *make_engine("environment"), lamp = *make_engine("environment"),
+         paint = *make_engine("environment");
+    const auto first = draw(*engine);
+    options_.lights = {scenes::spot(glm::vec3(.8f, 1, 1.8f), glm::vec3(.5f, .4f, 0), .6f, .6f, 9)};
+    const auto second = draw(*engine);
+    EXPECT_NE(second, first);
+    EXPECT_EQ(second, draw(*lamp));
+    options_.materials = {scenes::material(.4f)};
+    const auto third = draw(*engine);
+    EXPECT_NE(third, second);
+    EXPECT_EQ(third, draw(*paint));
+}
+
 TEST(KeptCaches, StayOutsideThePictureOfTheNextWholeFrameAndNeverExceedTheirMost) {
     using environment::Cache;
     using environment::KeptCaches;
