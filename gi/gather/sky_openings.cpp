@@ -87,7 +87,7 @@ float largest_cosine(const Cone& cone, const glm::vec3& normal) {
 /// The sky seen through an opening.
 struct SkyRay {
     glm::vec3 place;  ///< about where it passes the opening, m
-    glm::vec3 radiance;
+    glm::vec3 direction;
 };
 
 /// Returns how far away an opening is through which a ray passes: as far as what surrounds it. 0: nothing
@@ -184,7 +184,7 @@ SkyOpenings SkyOpenings::find(const tracing::SurfelTracer& tracer, const GatherS
         for (size_t i = first; i < last && !(stop && *stop); ++i)
             for (const glm::vec3& ray : free[i]) {
                 const float distance = distance_of_opening(tracer, starts[i], ray);
-                if (distance > 0) found[i].push_back({starts[i] + distance * ray, sky.radiance(ray)});
+                if (distance > 0) found[i].push_back({starts[i] + distance * ray, ray});
             }
     });
     std::vector<SkyRay> rays;
@@ -200,21 +200,31 @@ SkyOpenings SkyOpenings::find(const tracing::SurfelTracer& tracer, const GatherS
     const auto least = static_cast<float>(kLeastShareOfDistance * *middle);
     for (const Cluster& cluster : clusters_of(std::move(rays))) {
         glm::vec3 place(0.0f);
-        float brightness = 0, radius = least;
+        float radius = least;
+        openings.first_ray_.push_back(openings.rays_.size());
         for (const SkyRay& ray : cluster.rays) {
             place += ray.place / static_cast<float>(cluster.rays.size());
-            brightness += mean_colour(ray.radiance) / static_cast<float>(cluster.rays.size());
+            openings.rays_.push_back(ray.direction);
         }
-        if (!(brightness > 0)) continue;
         for (const SkyRay& ray : cluster.rays)
             radius = std::max(radius, kMargin * glm::distance(place, ray.place));
         openings.spheres_.emplace_back(place, radius);
-        openings.brightness_.push_back(brightness);
     }
+    openings.first_ray_.push_back(openings.rays_.size());
     openings.tracer_ = &tracer;
-    openings.sky_ = &sky;
+    openings.set_sky(sky);
     openings.find_visible(pilots, starts, seed, stop);
     return stop && *stop ? SkyOpenings{} : openings;
+}
+
+void SkyOpenings::set_sky(const GatherSky& sky) {
+    sky_ = &sky;
+    brightness_.assign(spheres_.size(), 0.0f);
+    for (size_t k = 0; k < spheres_.size(); ++k) {
+        const size_t first = first_ray_[k], end = first_ray_[k + 1];
+        for (size_t i = first; i < end; ++i)
+            brightness_[k] += mean_colour(sky.radiance(rays_[i])) / static_cast<float>(end - first);
+    }
 }
 
 void SkyOpenings::find_visible(std::span<const GatherPoint> pilots, std::span<const glm::vec3> starts,

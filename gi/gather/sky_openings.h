@@ -28,6 +28,10 @@ class SkyOpenings {
                             std::span<const GatherPoint> pilots, uint64_t seed,
                             const std::atomic<bool>* stop = nullptr);
 
+    /// Replaces the sky, which must outlive this: the openings stay where they are. A sky without light is
+    /// one to find() nothing under, and must not come here.
+    void set_sky(const GatherSky& sky);
+
     bool empty() const { return spheres_.empty(); }
     /// The middles and radii of the spheres, m.
     std::span<const glm::vec4> spheres() const { return spheres_; }
@@ -60,7 +64,9 @@ class SkyOpenings {
     const tracing::SurfelTracer* tracer_ = nullptr;
     const GatherSky* sky_ = nullptr;
     std::vector<glm::vec4> spheres_;
-    std::vector<float> brightness_;  ///< of the sky in each sphere, W/(sr m^2)
+    std::vector<glm::vec3> rays_;    ///< directions of those that found the spheres, sphere by sphere
+    std::vector<size_t> first_ray_;  ///< of each sphere, and the end
+    std::vector<float> brightness_;  ///< of the sky in each sphere, W/(sr m^2); 0: it gets no rays
     std::vector<Pilot> pilots_;
     std::vector<float> visible_;  ///< for each pilot: the open share of each sphere
 };

@@ -37,6 +37,13 @@ glm::dvec2 random_square(Random& random) {
     return {x, random.uniform()};
 }
 
+/// Whether a cap of sky is above the plane of a surface as a whole. Then it lights it evenly as if all of its
+/// light came from the middle.
+bool above(const Light& light, const glm::vec3& normal) {
+    return light.kind == kDirectionalLight && light.direction.w < 0.5f * kPi &&
+           -glm::dot(normal, glm::vec3(light.direction)) > std::sin(light.direction.w);
+}
+
 }  // namespace
 
 TracedLights::TracedLights(const tracing::SurfelTracer& tracer, std::span<const Light> lights,
@@ -114,6 +121,12 @@ glm::vec3 TracedLights::reflected(const SurfacePoint& point, const Reflectance& 
         const glm::dvec2 shift = random_square(random);
         const uint8_t sight = sights.empty() ? uint8_t{kSeenInPart} : sights[l];
         if (sight == kHidden) continue;
+        if (sight == kSeen && surface.ks == 0 && above(soft_[l], point.normal)) {
+            glm::vec3 in;
+            const glm::vec3 irradiance = light_irradiance(soft_[l], point.position, point.normal, in);
+            sum += brdf(surface, point.normal, point.viewer, in) * irradiance;
+            continue;
+        }
         for (uint32_t i = 0; i < samples_; ++i)
             if (const auto in =
                     tracing::sample_light(soft_[l], point.position, lattice_point(i, samples_, shift)))

@@ -41,7 +41,10 @@ Result<void> TreeLighting::prepare(Frame& frame, std::string_view engine) {
         sky_ = gather_sky(frame.environment);
         bright_ = SkyDirections(sky_.bright);
         LUCARNE_TRY(gatherer_.set_sky(*opencl_, sky_));
-        drop_openings();
+        if (has_sky())
+            openings_.set_sky(sky_);
+        else
+            drop_openings();
         sky_of_ = scene_.environment;
     }
     return upload_materials(frame.gl.device, frame.materials, materials_);

@@ -161,6 +161,25 @@ TEST(SkyOpenings, PointsFarFromOpeningsReceiveNoMoreThanTheSky) {
     EXPECT_LT(part, 1.02);
 }
 
+TEST(SkyOpenings, UnderAnotherSkyTheyAreThoseThatAreFoundUnderIt) {
+    const auto tracer = tracer_of(room_with_a_window());
+    ASSERT_TRUE(tracer);
+    const GatherSky even = even_sky(1);
+    GatherSky stripes{.width = 64, .height = 1};  // of which the window shows two or three
+    for (int i = 0; i < 64; ++i) stripes.texels.emplace_back(i % 2 == 0 ? 3.0f : 0.0f);
+    const SkyOpenings found = SkyOpenings::find(*tracer, stripes, pilots_on_floor(), 3);
+    SkyOpenings moved = SkyOpenings::find(*tracer, even, pilots_on_floor(), 3);
+    ASSERT_FALSE(moved.empty());
+    const auto light = [&](const SkyOpenings& openings) {
+        double own = 0;
+        return light_of_openings(openings, *tracer, point_on_floor(2.5f, 1.5f, 5), own);
+    };
+    EXPECT_NE(light(moved), light(found));
+    moved.set_sky(stripes);
+    EXPECT_EQ(light(moved), light(found));
+    EXPECT_GT(light(found), 0);
+}
+
 TEST(SkyOpenings, NoneAreFoundWhereThereAreNoneOrTheSkyIsWide) {
     const GatherSky sky = even_sky(1);
     const auto closed = tracer_of(scenes::closed_box(4, 60, glm::vec3(0.5f)));
