@@ -121,6 +121,7 @@ Result<void> TreeLighting::make_light(Frame& frame, const Radiosity::Settings& s
         return {};
     }
     light_of_.reset();
+    ++light_number_;
     own_slots_.clear();
     {
         const TimedPass pass(frame, "surfel light");

@@ -59,6 +59,8 @@ class TreeLighting {
     /// sky is left out. Errors: a device failed.
     Result<void> add_direct(Frame& frame);
 
+    /// Number of the light that make_light() has made: the same means the same light of surfels and sky.
+    uint64_t light_number() const { return light_number_; }
     /// Whether micro-buffers see light where they are empty.
     bool has_sky() const { return !sky_.texels.empty(); }
     ClDevice& opencl() { return *opencl_; }
@@ -105,6 +107,7 @@ class TreeLighting {
     std::optional<std::pair<CameraView, uint64_t>> openings_of_;  ///< view, revision of the settings
     std::optional<uint64_t> tree_of_;  ///< revision of the light cut that the tree is made from
     std::optional<Basis> light_of_;
+    uint64_t light_number_ = 0;
     SharedLight slots_;      ///< the light of make_light()
     SideLobes lobes_;        ///< by slot, that belong to it
     bool replaced_ = false;  ///< the gatherer has other light

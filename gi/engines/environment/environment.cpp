@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -103,11 +104,22 @@ class EnvironmentEngine final : public Engine {
         bool operator==(const SecondariesOf&) const = default;
     };
 
+    /// Likewise for the irradiance that was gathered at secondary points.
+    struct GatheredOf {
+        uint64_t light, seed;
+        Gathered what;
+        bool operator==(const GatheredOf&) const = default;
+    };
+
     TreeLighting lighting_;
     MicroBuffers buffers_, secondary_buffers_;
     std::array<MicroBuffers, 2> repairs_;  ///< of lonely pixels: of some of them, and of what is left
     Secondaries secondaries_;
     std::optional<SecondariesOf> secondaries_of_;
+    /// Irradiance by side, W/m^2, that secondary points of this and of earlier views have gathered: it does
+    /// not depend on the view.
+    std::unordered_map<uint32_t, glm::vec3> gathered_;
+    std::optional<GatheredOf> gathered_of_;
     std::vector<Cache> caches_;
     KeptCaches kept_;
     bool lit_ = false;  ///< the light that surfels send out is there: the last frame was finished
@@ -214,6 +226,9 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
     const TimedPass pass(frame, "light at secondary points");
     const CameraView& camera = frame.camera;
     const CacheTiles tiles(camera, caches_);
+    const GatheredOf basis{lighting_.light_number(), seed_, what};
+    if (gathered_of_ != basis || gathered_.size() > kMostSecondariesHeld) gathered_.clear();
+    gathered_of_ = basis;
     std::vector<CacheTiles::Counting> room;
     std::vector<glm::vec3> irradiances(sides.size(), glm::vec3(0.0f));
     std::vector<GatherPoint> points;
@@ -230,10 +245,15 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
                 continue;
             }
         }
+        if (const auto known = gathered_.find(sides[i]); known != gathered_.end()) {
+            irradiances[i] = known->second;
+            continue;
+        }
         points.push_back(point_at(place.position, place.normal, place.radius, mix64(seed_ + 1, sides[i])));
         places.push_back(i);
     }
     gathering_ = points.size();
+    if (points.empty()) return irradiances;  // buffers stay, for other light
     Gatherer& gatherer = lighting_.gatherer();
     if (points.size() > kMostSecondariesHeld) {
         std::vector<glm::vec4> gathered(points.size());
@@ -246,8 +266,10 @@ Result<std::vector<glm::vec3>> EnvironmentEngine::irradiance_at(Frame& frame, st
         gatherer.see(lighting_.opencl(), points, kSecondarySide, seed_, secondary_buffers_, frame.stop));
     if (frame.stopped()) return irradiances;
     LUCARNE_ASSIGN(const auto gathered, gatherer.shade(lighting_.opencl(), what, secondary_buffers_));
-    for (size_t i = 0; i < places.size(); ++i)
+    for (size_t i = 0; i < places.size(); ++i) {
         irradiances[places[i]] = kPi * gathered[i].on(points[i].normal);
+        gathered_.emplace(sides[places[i]], irradiances[places[i]]);
+    }
     return irradiances;
 }
 

@@ -105,6 +105,27 @@ TEST_F(EnvironmentMotion, AFrameThatWasGivenUpLeavesTheLightOfTheOneBefore) {
     EXPECT_LT(difference(picture(*other, aside_), in_motion(*engine, aside_)), 0.1);
 }
 
+TEST_F(EnvironmentMotion, SecondaryPointsOfEarlierViewsDoNotGatherAgain) {
+    const auto loaded = load_cloud(*device, cloud_);
+    ASSERT_TRUE(loaded) << loaded.error().line();
+    const auto draw = [&](Engine& engine, const glm::vec3& target) {
+        auto lit = draw_frame(*device, engine, (*loaded)->pool, (*loaded)->cut,
+                              look({.3f, .4f, .5f}, target, 64, 48), *options_.bounds, options_);
+        EXPECT_TRUE(lit) << lit.error().line();
+        return lit ? lit->radiance : std::vector<glm::vec4>();
+    };
+    auto engine = *make_engine("environment"), other = *make_engine("environment");
+    draw(*engine, ahead_);
+    const auto moved = draw(*engine, aside_), right = draw(*other, aside_);
+    EXPECT_GT(figure(*other, "after_down"), 20);
+    EXPECT_LT(figure(*engine, "after_down"), .5 * figure(*other, "after_down"));
+    EXPECT_LT(difference(right, moved), 1e-4);
+    options_.settings.set(kSeed, 7);
+    const auto again = draw(*engine, aside_);
+    auto fresh = *make_engine("environment");
+    EXPECT_EQ(again, draw(*fresh, aside_)) << "other light: all of them gather";
+}
+
 // Places, micro-buffers and reflectances stay while only lights change.
 TEST_F(EnvironmentMotion, UnderOtherLightItShowsWhatANewEngineShows) {
     auto sky = std::make_shared<Environment>();
