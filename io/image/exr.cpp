@@ -90,9 +90,11 @@ Image decode(const ByteSource& file, uint64_t most_pixels) {
     const auto window = exr.header().dataWindow();
     const int64_t width = int64_t{window.max.x} - window.min.x + 1,
                   height = int64_t{window.max.y} - window.min.y + 1;
+    const uint64_t most = std::min(most_pixels, kMostPixels);
     if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide ||
-        static_cast<uint64_t>(width * height) > std::min(most_pixels, kMostPixels))
-        throw std::runtime_error(fmt::format("it has {}x{} pixels, which is too large", width, height));
+        static_cast<uint64_t>(width * height) > most)
+        throw std::runtime_error(
+            fmt::format("it has {}x{} pixels, which is too large: at most {} in all", width, height, most));
 
     const Imf::ChannelList& channels = exr.header().channels();
     const bool gray = channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr;

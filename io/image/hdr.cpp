@@ -151,9 +151,9 @@ Result<Image> read_hdr(const std::filesystem::path& path, uint64_t most_pixels) 
     const std::string name = path.string();
     LUCARNE_ASSIGN(const Header header, read_header(file));
     const uint64_t pixels = uint64_t{header.width} * header.height;
-    if (pixels > std::min(most_pixels, kMostPixels))
-        return rejected(name,
-                        fmt::format("it has {}x{} pixels, which is too large", header.width, header.height));
+    if (const uint64_t most = std::min(most_pixels, kMostPixels); pixels > most)
+        return rejected(name, fmt::format("it has {}x{} pixels, which is too large: at most {} in all",
+                                          header.width, header.height, most));
     Stream stream(file, header.bytes);
     // The shortest scan line consists of runs only: two bytes for 127 values.
     const uint64_t shortest =

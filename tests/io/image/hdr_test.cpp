@@ -61,7 +61,7 @@ TEST(Hdr, WhatIsNoneOrLiesIsRejectedWithItsReason) {
         {"#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n0000", "exposure"},
         {kHead + "+X 1 -Y 1\n0000", "size"},
         {kHead + "-Y 99999999 +X 99999999\n0000", "size"},
-        {kHead + "-Y 16384 +X 16384\n0000", "too large"},
+        {kHead + "-Y 16384 +X 16384\n0000", "too large: at most 67108864 in all"},
         {kHead + "-Y 4096 +X 4096\n0000", "shorter"},
         {kHead + "-Y 1 +X 8\n" + bytes({2, 2, 0, 9, 0, 0, 0, 0, 0, 0, 0, 0}), "another width"},
         {kHead + "-Y 1 +X 8\n" + bytes({2, 2, 0, 8, 128 + 9, 1, 0, 0, 0, 0, 0, 0}), "does not fit"},
