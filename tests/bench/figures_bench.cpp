@@ -20,6 +20,7 @@
 #include "gi/engines/vpl/options.h"
 #include "gi/lighting/light_options.h"
 #include "tests/bench/bench_run.h"
+#include "tests/bench/environment_figures.h"
 #include "tests/bench/gathered_figures.h"
 #include "tests/bench/paths_figures.h"
 #include "tests/bench/scan.h"
@@ -205,7 +206,10 @@ Result<void> make_figures(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     fmt::print("{}; {} hardware threads\n", device->info().renderer, std::thread::hardware_concurrency());
     if (run.subject == "micro") return bench::figures_of_micro(*device, run);
-    if (run.subject == "environment") return bench::figures_of_environment(*device, run);
+    if (run.subject == "environment") {
+        LUCARNE_TRY(bench::figures_of_environment(*device, run));
+        return bench::figures_of_environment_parts(*device, run);
+    }
     if (run.subject == "yue") return bench::figures_of_paths(*device, run);
     if (run.subject == "gaitatzes") {
         if (run.wants("5")) LUCARNE_TRY(bench::figures_of_chapter_5(*device, run));
