@@ -50,6 +50,11 @@ glm::dvec3 PatchMesh::normal(size_t quad, double t, double s) const {
     return unit_or_up(bilinear(normals, quad, t, s));
 }
 
+Outline mirrored(Outline outline) {
+    for (glm::dvec2& corner : outline) corner.x = -corner.x;
+    return outline;
+}
+
 void PatchBuilder::add_quad(const ShadedQuad& quad, PatchBand& band) {
     const auto& c = quad.corners;
     const double area = triangle_area(c[0], c[1], c[3]) + triangle_area(c[2], c[3], c[1]);
@@ -200,6 +205,14 @@ void PatchBuilder::extrude(Finish finish, const Plane& plane, const Outline& out
     // cross(along the outline, back) points into an outline that goes round counter-clockwise.
     surface.flip = (twice_area > 0) != (air == Air::inside);
     grid(finish, surface);
+}
+
+void PatchBuilder::prism(Finish finish, const Plane& plane, const Outline& outline, double depth) {
+    sheet(finish, plane, std::span(&outline, 1));
+    extrude(finish, plane, outline, depth, Air::outside);
+    const Outline back = mirrored(outline);
+    const glm::dvec3 behind = glm::normalize(glm::cross(plane.u, plane.v)) * -depth;
+    sheet(finish, {plane.origin + behind, -plane.u, plane.v}, std::span(&back, 1));
 }
 
 void PatchBuilder::box(Finish finish, const glm::dvec3& min, const glm::dvec3& max, unsigned faces, Air air) {

@@ -60,6 +60,8 @@ struct Plane {
     glm::dvec3 at(const glm::dvec2& p) const { return origin + u * p.x + v * p.y; }
 };
 using Outline = std::vector<glm::dvec2>;  ///< a closed polygon; the last corner joins the first
+/// Returns the same outline for a plane whose u axis runs the other way.
+Outline mirrored(Outline outline);
 
 /// Rows of points, all of the same length, that span a surface.
 struct Grid {
@@ -85,6 +87,8 @@ class PatchBuilder {
     enum class Air { inside, outside };
     void extrude(Finish finish, const Plane& plane, const Outline& outline, double depth, Air air,
                  bool closed = true);
+    /// Adds a closed prism: the outline in the plane, its sides and the same outline `depth` behind it.
+    void prism(Finish finish, const Plane& plane, const Outline& outline, double depth);
     /// Which faces of a box to build: bits of the directions -x, +x, -y, +y, -z, +z.
     static constexpr unsigned kAllFaces = 63, kNoBottom = 63 & ~16u;
     void box(Finish finish, const glm::dvec3& min, const glm::dvec3& max, unsigned faces = kAllFaces,

@@ -36,6 +36,11 @@ constexpr std::array kEntries = {
     Entry{"paraboloid", "a metal mirror of 1.2 m before a wall, focal length 1.2 m", build_paraboloid},
     Entry{"primitives", "boxes, balls, a cylinder and a cone on a floor of 12 m, seen from outside",
           build_primitives},
+    Entry{"loft", "a room of 8 x 5 x 3 m with three windows, open stairs, a gallery and furniture",
+          build_loft},
+    Entry{"lattice", "a sealed room with thin screens, and a wall at 45 degrees that shuts off a corner",
+          build_lattice},
+    Entry{"arbour", "a marble bust under beams overgrown with leaves, outdoors", build_arbour},
 };
 
 /// A place in a quad, with the weights of its corners.

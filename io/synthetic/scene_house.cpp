@@ -15,11 +15,6 @@ const Outline kWindow{{1.2, .9}, {2.8, .9}, {2.8, 2.2}, {1.2, 2.2}};     // x, z
 const Outline kDoorway{{2.4, 0}, {3.3, 0}, {3.3, 2.0}, {2.4, 2.0}};      // y, z
 const Outline kTransom{{2.4, 2.1}, {3.3, 2.1}, {3.3, 2.4}, {2.4, 2.4}};  // y, z: an opening over the door
 
-Outline mirrored(Outline outline) {
-    for (dvec2& corner : outline) corner.x = -corner.x;
-    return outline;
-}
-
 /// Adds floors, ceilings and the three walls of each room that are not the wall between them.
 void add_rooms(PatchBuilder& b) {
     constexpr unsigned kX0 = 1, kX1 = 2, kSouth = 4, kNorth = 8, kFloor = 16, kCeiling = 32;

@@ -130,13 +130,15 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     LUCARNE_ASSIGN(const auto source, open_input(options.input));
     LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(drawing_options, *source));
     drawing_options.render.engine = loaded.engine;
-    loaded.first_view = false;  // the path has the cameras
+    loaded.first_view = false;                     // the path has the cameras
+    LUCARNE_TRY(path.lights.check(loaded.scene));  // before paths are computed in advance
     LUCARNE_ASSIGN(const auto pipeline,
                    open_pipeline(*device, source, drawing_options, drawing, loaded.scene));
     conditions.start.open_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
 
     FlightOptions how{drawing.size, !options.realtime, {}, options.overwrite};
     how.site = loaded.site;
+    how.scene = loaded.scene;
     how.flicker = options.flicker;
     how.changes = options.popping;
     how.soak = options.soak;

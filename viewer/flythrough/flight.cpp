@@ -141,6 +141,7 @@ struct Flying {
     Measures measures{options};
     Budgets budgets{pipeline, options};
     Record record{};
+    gi::Scene scene = options.scene;  ///< as the lights are now
 
     /// Flies once along the path.
     Result<void> lap(size_t number) {
@@ -166,6 +167,10 @@ struct Flying {
     }
 
     Result<void> draw(double time, size_t lap) {
+        if (!path.lights.empty()) {
+            path.lights.light(scene, time);
+            LUCARNE_TRY(pipeline.set_scene(scene));
+        }
         FrameRequest request;
         request.camera = path.at(time);
         request.size = options.size;
@@ -212,6 +217,7 @@ Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool ove
 }
 
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options) {
+    LUCARNE_TRY(path.lights.check(options.scene));
     const bool known_length = options.wait && options.soak == 0;
     Flying flying{pipeline, path, options,
                   Progress(options.wait ? "flying" : "flying in real time", known_length ? path.frames() : 0,

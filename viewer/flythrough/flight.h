@@ -31,6 +31,9 @@ struct FlightOptions {
     /// Time of each frame for making light that outlasts it, s (FrameRequest::light_budget). By default
     /// unlimited with `wait`, and kLightShare of the frame's time otherwise.
     std::optional<double> light_seconds;
+    /// What the path's lights light: the pipeline's scene with all its lights, also those that do not shine.
+    /// Needed only for paths with light tracks.
+    gi::Scene scene{};
     /// What the scan shows: outside its rooms, points that face away are not drawn. None: all points are.
     std::optional<Site> site;
 };
@@ -48,8 +51,8 @@ inline constexpr size_t kLongestRecord = 8192;
 Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool overwrite);
 
 /// Flies along a path with a pipeline that has been set up. The clock pauses while frames are written and
-/// analysed, so that this does not affect the measured times. Errors: those of the pipeline; a frame cannot
-/// be written.
+/// analysed, so that this does not affect the measured times. A path with light tracks sets the pipeline's
+/// scene. Errors: those of the pipeline; a frame cannot be written; the tracks do not fit the scene.
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options);
 
 }  // namespace lucarne::viewer

@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kMostKeys = 10000;
 constexpr double kMostFrames = 1e6;
-constexpr double kMostSeconds = 1e5;
+constexpr JsonRange kSeconds{0, 1e5};
 constexpr double kFarthest = 1e9;  ///< coordinates of any earthly reference system fit
 
 double radians(double degrees) {
@@ -37,29 +37,10 @@ double degrees(double angle) {
     return exact;
 }
 
-/// Evaluates the curve of one quantity at `time`, which lies in [keys[i].time, keys[i + 1].time].
-template <class Get>
-auto interpolate(const std::vector<KeyFrame>& keys, size_t i, double time, const Get& get) {
-    const auto slope = [&](size_t a, size_t b) {
-        return (get(keys[b].camera) - get(keys[a].camera)) / (keys[b].time - keys[a].time);
-    };
-    // The slope of the parabola through three keys at the middle key.
-    const auto tangent = [&](size_t k) {
-        if (k == 0) return slope(0, 1);
-        if (k + 1 == keys.size()) return slope(k - 1, k);
-        const double before = keys[k].time - keys[k - 1].time, after = keys[k + 1].time - keys[k].time;
-        return (slope(k - 1, k) * after + slope(k, k + 1) * before) / (before + after);
-    };
-    const double span = keys[i + 1].time - keys[i].time;
-    const double t = (time - keys[i].time) / span, t2 = t * t, t3 = t2 * t;
-    return get(keys[i].camera) * (2 * t3 - 3 * t2 + 1) + tangent(i) * ((t3 - 2 * t2 + t) * span) +
-           get(keys[i + 1].camera) * (3 * t2 - 2 * t3) + tangent(i + 1) * ((t3 - t2) * span);
-}
-
 Result<KeyFrame> read_key(JsonObject& object) {
     const JsonRange place{-kFarthest, kFarthest};
     KeyFrame key;
-    LUCARNE_ASSIGN(key.time, object.number("time", {0, kMostSeconds}));
+    LUCARNE_ASSIGN(key.time, object.number("time", kSeconds));
     LUCARNE_ASSIGN(key.camera.position, object.vector("position", place));
     LUCARNE_ASSIGN(key.camera.target, object.vector("target", place));
     LUCARNE_ASSIGN(key.camera.up, object.vector("up", {-1e3, 1e3}, glm::dvec3(0, 0, 1)));
@@ -80,15 +61,14 @@ size_t CameraPath::frames() const {
 }
 
 gi::SceneCamera CameraPath::at(double time) const {
-    if (keys.size() == 1 || time <= keys.front().time) return keys.front().camera;
-    if (time >= keys.back().time) return keys.back().camera;
-    const auto next = std::ranges::upper_bound(keys, time, {}, &KeyFrame::time);
-    const size_t i = static_cast<size_t>(next - keys.begin()) - 1;
-    gi::SceneCamera camera = keys[i].camera;
-    camera.position = interpolate(keys, i, time, [](const gi::SceneCamera& c) { return c.position; });
-    camera.target = interpolate(keys, i, time, [](const gi::SceneCamera& c) { return c.target; });
-    camera.up = interpolate(keys, i, time, [](const gi::SceneCamera& c) { return c.up; });
-    camera.vertical_fov = interpolate(keys, i, time, [](const gi::SceneCamera& c) { return c.vertical_fov; });
+    const auto on_curve = [&](auto member) {
+        return curve_at(keys, time, [&](const KeyFrame& key) { return key.camera.*member; });
+    };
+    gi::SceneCamera camera = keys[key_before(keys, time)].camera;
+    camera.position = on_curve(&gi::SceneCamera::position);
+    camera.target = on_curve(&gi::SceneCamera::target);
+    camera.up = on_curve(&gi::SceneCamera::up);
+    camera.vertical_fov = on_curve(&gi::SceneCamera::vertical_fov);
     return camera;
 }
 
@@ -106,6 +86,7 @@ Result<CameraPath> parse_path(std::string_view text, const std::string& name) {
                 "time");
         path.keys.push_back(std::move(key));
     }
+    LUCARNE_ASSIGN(path.lights, read_light_tracks(root, kSeconds));
     LUCARNE_TRY(root.finish());
     if (path.keys.empty()) return root.wrong("must hold at least one key frame", "keys");
     if (path.duration() * path.frames_per_second > kMostFrames)
@@ -123,7 +104,9 @@ std::string path_text(const CameraPath& path) {
                         {"target", vector(key.camera.target)},
                         {"up", vector(key.camera.up)},
                         {"fov", degrees(key.camera.vertical_fov)}});
-    return json_text(Json{{"frames_per_second", path.frames_per_second}, {"keys", keys}});
+    Json text{{"frames_per_second", path.frames_per_second}, {"keys", keys}};
+    write_light_tracks(path.lights, text);
+    return json_text(text);
 }
 
 Result<CameraPath> load_path(const std::filesystem::path& path) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gi/scene/scene.h"
+#include "viewer/flythrough/light_tracks.h"
 
 namespace lucarne::viewer {
 
@@ -15,12 +16,12 @@ struct KeyFrame {
     gi::SceneCamera camera;
 };
 
-/// A camera path through a scene: key frames joined by cubic Hermite curves with the tangents of Catmull &
-/// Rom ("A class of local interpolating splines", 1974) for uneven times, one-sided at both ends. The curves
-/// pass through every key frame, and the speed is continuous there.
+/// A camera path through a scene: key frames joined by the curves of curve_at(), and what the scene's lights
+/// do meanwhile.
 struct CameraPath {
     double frames_per_second = 25;
     std::vector<KeyFrame> keys;  ///< at least one, times strictly increasing
+    LightTracks lights;          ///< their times are those of the key frames
 
     double start() const { return keys.front().time; }
     double duration() const { return keys.back().time - keys.front().time; }  ///< s

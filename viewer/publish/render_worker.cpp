@@ -77,6 +77,7 @@ Result<std::string> RenderWorker::flight(Pipeline& pipeline, const RenderOrder& 
     FlightOptions how;
     how.size = order.size;
     how.site = order.site;
+    how.scene = order.scene;
     if (!what.frames_folder.empty()) how.frames_folder = what.frames_folder;
     how.take_frame = [&](const io::Image8& picture, size_t) -> Result<void> {
         if (video) LUCARNE_TRY(video->add(picture));

@@ -161,7 +161,8 @@ TEST(SceneFile, AFileThatIsNotThereIsAnError) {
 
 TEST(SceneFile, TheScenesOfThisRepositoryLoad) {
     for (const char* name : {"cornell", "furnace", "nave", "two-rooms", "house", "statue", "ring",
-                             "paraboloid", "cornell-glossy", "statue-sky", "survey-sky", "primitives-sky"}) {
+                             "paraboloid", "cornell-glossy", "statue-sky", "survey-sky", "primitives-sky",
+                             "loft-lamps", "loft-day", "lattice", "arbour"}) {
         const auto scene = load_scene(std::string(LUCARNE_SOURCE_DIR) + "/data/scenes/" + name + ".json");
         ASSERT_TRUE(scene) << scene.error().line();
         EXPECT_FALSE(scene->cameras.empty()) << name;

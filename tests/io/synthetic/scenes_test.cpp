@@ -20,7 +20,9 @@ std::shared_ptr<const SceneGeometry> geometry_of(const std::string& scene) {
 TEST(SyntheticScenes, SealedRoomsAreWatertight) {
     for (const auto& [scene, inside] : {std::pair{"furnace", dvec3(.3, -.2, .1)},
                                         {"two-rooms", dvec3(1.1, 1.3, 1.5)},
-                                        {"two-rooms", dvec3(6.9, 2.2, 1.2)}}) {
+                                        {"two-rooms", dvec3(6.9, 2.2, 1.2)},
+                                        {"lattice", dvec3(3.3, 2.4, 1.5)},
+                                        {"lattice", dvec3(5.4, .7, 1.4)}}) {
         const auto geometry = geometry_of(scene);
         Random random(11);
         size_t escaped = 0;
@@ -137,6 +139,73 @@ TEST(SyntheticScenes, LightReachesTheSecondRoomOfTheHouseOnlyOverTheDoor) {
     EXPECT_GT(through, 500u);
     EXPECT_FALSE(geometry->cast({2, 1, 1.5}, {0, -1, 0})) << "the window is open";
     EXPECT_TRUE(geometry->cast({3.5, 1, 1.5}, {0, -1, 0})) << "the wall beside it is not";
+}
+
+TEST(SyntheticScenes, NoRayCrossesTheDiagonalWallOfTheLatticeAndManyPassItsScreens) {
+    const auto geometry = geometry_of("lattice");
+    Random random(9);
+    size_t behind_slats = 0, behind_board = 0;
+    for (int i = 0; i < 200'000; ++i) {
+        const auto dark = geometry->cast({5.4, .7, 1.4}, random_direction(random));
+        ASSERT_TRUE(dark);
+        EXPECT_GT(dark->position.x - dark->position.y, 3.8) << "the corner is shut off";
+        const auto lit = geometry->cast({3.1, 2.2, 1.4}, random_direction(random));
+        ASSERT_TRUE(lit);
+        EXPECT_LT(lit->position.x - lit->position.y, 3.83);
+        behind_slats += lit->position.x < 1.19 ? 1 : 0;
+        behind_board += lit->position.y > 3.9 && lit->position.x > 2 && lit->position.x < 4.2 &&
+                                lit->position.z > .4 && lit->position.z < 2.2
+                            ? 1
+                            : 0;
+    }
+    EXPECT_GT(behind_slats, 5000u);
+    EXPECT_GT(behind_board, 5000u);
+}
+
+TEST(SyntheticScenes, LightReachesTheLoftOnlyThroughItsWindows) {
+    const auto geometry = geometry_of("loft");
+    Random random(13);
+    size_t south = 0, west = 0;
+    for (int i = 0; i < 300'000; ++i) {
+        const dvec3 from(3.2, 2.9, 1.6), direction = random_direction(random);
+        const auto hit = geometry->cast(from, direction);
+        const bool leaves = !hit || hit->position.x < -.26 || hit->position.y < -.26;
+        if (!leaves) continue;
+        const dvec3 at_south = from + direction * (-from.y / direction.y),
+                    at_west = from + direction * (-from.x / direction.x);
+        if (direction.y < 0 && at_south.x > 0) {
+            const double x = at_south.x > 3 ? at_south.x - 2.7 : at_south.x;
+            EXPECT_TRUE(x > .899 && x < 2.501 && at_south.z > .499 && at_south.z < 2.401)
+                << x << " " << at_south.z;
+            ++south;
+        } else {
+            EXPECT_TRUE(at_west.y > 1.599 && at_west.y < 3.201 && at_west.z > .899 && at_west.z < 2.201);
+            ++west;
+        }
+    }
+    EXPECT_GT(south, 5000u);
+    EXPECT_GT(west, 1000u);
+    EXPECT_TRUE(geometry->cast({1.7, 2, 2.0}, {0, -1, 0})) << "the bar in the middle of a window";
+    EXPECT_FALSE(geometry->cast({1.3, 2, 2.0}, {0, -1, 0}));
+    const auto tread = geometry->cast({5.0, 4.5, 2.9}, {0, 0, -1});
+    ASSERT_TRUE(tread);
+    EXPECT_NEAR(tread->position.z, 5 * 1.7 / 8, 1e-5) << "the fifth step";
+    EXPECT_GT(geometry->cast({4.87, 4.5, .95}, {1, 0, 0})->position.x, 5.5)
+        << "the stairs are open between treads";
+}
+
+TEST(SyntheticScenes, LeavesLetSomeOfTheLightThrough) {
+    const auto geometry = geometry_of("arbour");
+    size_t through = 0, rays = 0;
+    for (double x = -1.3; x < 1.3; x += .013)
+        for (double y = -1.3; y < 1.3; y += .013) {
+            const auto hit = geometry->cast({x, y, 2.2}, {0, 0, 1});
+            through += hit ? 0 : 1;
+            ++rays;
+        }
+    const double open = static_cast<double>(through) / static_cast<double>(rays);
+    EXPECT_GT(open, .1);
+    EXPECT_LT(open, .4);
 }
 
 TEST(SyntheticScenes, WindowsOfTheNaveAreOpenAndItsWallsAreNot) {

@@ -122,6 +122,49 @@ TEST(Fly, WhatFramesTakeOverFromEachOtherLowersTheFlickerAndKeepsTheLight) {
     EXPECT_NEAR(kept / light, 1, 0.01);
 }
 
+TEST(Fly, LampsMoveAndFramesInWhichNothingChangesAreTheSameBits) {
+    const TemporaryFolder folder;
+    const std::string cache = make_cornell(folder, "20k");
+    // The lamp rests for two seconds, goes to the other wall, and gets five times weaker.
+    write(folder / "path.json", R"({"frames_per_second": 1, "keys": [
+        {"time": 0, "position": [2.7, 0.4, 2.7], "target": [2.7, 5, 2.4]},
+        {"time": 4, "position": [2.7, 0.4, 2.7], "target": [2.7, 5, 2.4]}],
+        "lights": [{"name": "ceiling lamp", "keys": [
+            {"time": 0, "position": [1.3, 2.2, 5.3], "target": [1.3, 2.7, 0], "strength": [170, 145, 110]},
+            {"time": 2, "position": [1.3, 2.2, 5.3], "target": [1.3, 2.7, 0]},
+            {"time": 3, "position": [4.2, 2.2, 5.3], "target": [4.2, 2.7, 0], "strength": [170, 145, 110]},
+            {"time": 4, "strength": [34, 29, 22]}]}]})");
+    const std::string lit = " --scene " LUCARNE_SOURCE_DIR "/data/scenes/cornell.json";
+    const auto fly = [&](const std::string& engine, const std::string& scene) {
+        return test::lucarne("fly " + cache + " --path " + (folder / "path.json") + scene + " --engine " +
+                             engine + " --preset preview --size 64x48 --bounces 1 --flicker --frames-dir " +
+                             (folder / engine) + " -o " + (folder / (engine + ".json")));
+    };
+    for (const std::string engine : {"direct", "paths"}) {
+        const Outcome flown = fly(engine, lit);
+        ASSERT_EQ(flown.code, 0) << flown.output;
+        const auto frame = [&](int number) {
+            return bytes_of(folder / (engine + "/frame_0000" + std::to_string(number) + ".png"));
+        };
+        EXPECT_GT(frame(1).size(), 500u);
+        EXPECT_EQ(frame(1), frame(2)) << engine;
+        EXPECT_EQ(frame(1), frame(3)) << engine;
+        EXPECT_NE(frame(3), frame(4)) << engine;
+        const auto frames = nlohmann::json::parse(bytes_of(folder / (engine + ".json")))["each_frame"];
+        ASSERT_EQ(frames.size(), 5u);
+        EXPECT_EQ(frames[1]["flicker"], 0.0) << engine;
+        EXPECT_EQ(frames[2]["flicker"], 0.0) << engine;
+        EXPECT_GT(frames[3]["flicker"].get<double>(), .2) << engine << ": the light comes from elsewhere";
+        // All light is the lamp's.
+        EXPECT_NEAR(frames[4]["luminance"].get<double>() / frames[3]["luminance"].get<double>(), .2, 1e-4)
+            << engine;
+    }
+    const Outcome dark = fly("direct", " --mood daylight --overwrite");
+    EXPECT_EQ(dark.code, 3) << dark.output;
+    EXPECT_THAT(dark.output, HasSubstr("the scene has no light of this name"));
+    EXPECT_EQ(std::count(dark.output.begin(), dark.output.end(), '\n'), 1) << dark.output;
+}
+
 TEST(Fly, MistakesInThePathAndTheArgumentsAreOneLineAndTheRightCode) {
     const TemporaryFolder folder;
     const std::string cache = folder / "none.luc", path = folder / "path.json",

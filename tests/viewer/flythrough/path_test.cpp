@@ -57,6 +57,16 @@ TEST(CameraPath, NeitherPlaceNorSpeedJumpsAtAKeyFrame) {
     }
 }
 
+TEST(CameraPath, RestsBetweenKeyFramesThatAgree) {
+    const CameraPath path = path_of(R"({"keys": [
+        {"time": 0, "position": [0.1, 0, 1.7], "target": [0.3, 9, 1], "fov": 50},
+        {"time": 1, "position": [0.7, 2, 1.7], "target": [0.3, 9, 1], "fov": 61},
+        {"time": 4, "position": [0.7, 2, 1.7], "target": [0.3, 9, 1], "fov": 61},
+        {"time": 5, "position": [2, 8, 1.1], "target": [3, 9, 1], "fov": 40}]})");
+    for (double time = 1; time <= 4; time += .013) EXPECT_EQ(path.at(time), path.keys[1].camera) << time;
+    EXPECT_NE(path.at(4.1), path.keys[1].camera);
+}
+
 TEST(CameraPath, CountsItsFramesAndStaysWithinItsTime) {
     const CameraPath path = path_of(kUneven);
     EXPECT_EQ(path.frames(), 36u) << "3.5 s at 10 frames a second, both ends";
