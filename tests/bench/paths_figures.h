@@ -118,10 +118,12 @@ inline Result<void> times_of_paths(Stage& stage, const BenchRun& run, const std:
 inline Result<void> figures_of_paths(gi::Device& device, const BenchRun& run) {
     heading(
         "Yue et al. 2007; no counterpart: fig. 7 a (cells are always adaptive), fig. 12 b (rays are not "
-        "split), "
-        "fig. 13 (textures of a GPU), their scenes");
-    for (const std::string& scene : run.cases<std::string>({"cornell", "nave"})) {
-        LUCARNE_ASSIGN(const Scan scan, Scan::create(scene, run.points(200'000), run.folder));
+        "split), fig. 13 (textures of a GPU). Cornell box, nave, arbour and loft stand for Box, Sponza, Tree "
+        "and Room");
+    using Named = std::pair<std::string, std::string>;
+    for (const auto& [name, scene] : run.cases<Named>(
+             {{"cornell", "cornell"}, {"nave", "nave"}, {"arbour", "arbour"}, {"loft", "loft-lamps"}})) {
+        LUCARNE_ASSIGN(const Scan scan, Scan::create(name, run.points(200'000), run.folder));
         Stage stage(device, scan);
         const ImageSize size = run.size({160, 120});
         LUCARNE_TRY(stage.open(
