@@ -54,6 +54,7 @@ struct LitOptions {
     glm::dvec3 origin{0.0};        ///< Frame::origin
     /// What the engine has computed in advance (Lit::bake of an earlier picture); null: it computes it.
     std::shared_ptr<const Bake> bake = nullptr;
+    glm::vec3 bake_offset{0.0f};  ///< Frame::bake_offset
 };
 
 /// Renders one frame of `cut`, which is view cut, light-view cut and light cut as far as the engine needs
@@ -84,6 +85,7 @@ inline Result<Lit> draw_frame(Device& device, Engine& engine, const SurfelPool& 
                 .moving = options.moving,
                 .light_budget = options.light_budget,
                 .bake = bake.get(),
+                .bake_offset = options.bake_offset,
                 .stop = options.stop,
                 .unlit = options.unlit,
                 .gl = on_device,

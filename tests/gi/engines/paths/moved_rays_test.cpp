@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/paths/interpolation.h"
+#include "gi/engines/paths/seen_points.h"
 #include "gi/shared/brdf.h"
 #include "tests/gi/engines/paths/paths_scenes.h"
 
@@ -85,6 +86,36 @@ TEST_F(MovedRaysInARoom, BringThePatchNearerToWhatItGives) {
     }
     ASSERT_GT(sum, 0);
     EXPECT_LT(off, .4 * off_before) << off / sum << " " << off_before / sum;
+}
+
+// From behind the wall, where the place itself is, the rays would go through the wall, and the patch beside
+// it would be on the other side of the plane.
+TEST_F(MovedRaysInARoom, OfTheRimOfADiscBehindAWallStartBeforeTheWall) {
+    MovedRays moved(bake_);
+    const std::vector<glm::vec3> light = patch();
+    moved.set(light);
+    const auto tracer = tracer_of(surfels_);
+    PointFinder finder(*bake_);
+    double before = 0, behind = 0, places = 0;
+    for (float z = .1f; z < .6f; z += .05f) {
+        // The wall at y = 0 ends at that at x = 0, and its discs stick out through that one by up to 1 mm.
+        const SurfacePoint rim{.position = {-.001f, 0, z},
+                               .normal = kY,
+                               .viewer = glm::normalize(glm::vec3(1, 1, 0)),
+                               .radius = .009f};
+        ASSERT_TRUE(finder.find(rim.position, rim.normal));
+        const glm::vec3 start = start_of_rays(*tracer, rim),
+                        above = tracing::offset_origin(rim.position, rim.normal, rim.radius);
+        EXPECT_GT(start.x, 0) << "in the room";
+        EXPECT_LT(glm::distance(start, rim.position), 3 * rim.radius);
+        ++places;
+        const Surfel inside{.position = {.01f, 0, z}, .normal = kY};
+        const double exact = factor(moved, inside, finder.shares());
+        before += std::abs(moved.factor(start, rim.normal, finder.shares()) / exact - 1);
+        behind += std::abs(moved.factor(above, rim.normal, finder.shares()) / exact - 1);
+    }
+    EXPECT_LT(before, .5 * behind) << before << " " << behind;
+    EXPECT_LT(before, .1 * places) << "the light of a place 1 cm beside the wall";
 }
 
 }  // namespace

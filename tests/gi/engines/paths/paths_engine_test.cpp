@@ -213,6 +213,37 @@ TEST_F(PathsEngine, ColumnsOfAnotherPackingGiveThePictureOfAFreshPreparation) {
     EXPECT_EQ(draw().radiance, draw_anew().radiance);
 }
 
+// Coordinates of frames begin near the camera, and those of the bake stay. Rays of pixels, which are moved
+// from their points', the points that they see and the sky are those of the same places.
+TEST_F(PathsEngine, ThePictureIsTheSameWhereverTheCoordinatesOfTheFrameBegin) {
+    const glm::vec3 offset(16, -8, 4);
+    auto surfels = scenes::closed_box(2, 40, glm::vec3(.6f));
+    for (size_t i = 0; i < surfels.size(); ++i) {
+        surfels[i].material = i % 3 == 0 ? 1 : 0;
+        surfels[i].position += offset;
+    }
+    const SurfelCloud elsewhere(std::move(surfels), {glm::dvec3(offset) - 8.0, 16});
+    const CameraView from =
+        look(offset + glm::vec3(.3f, .4f, .5f), offset + glm::vec3(1.2f, 1.3f, .9f), 48, 48);
+    options_.settings.set(kOnlyBounce, 1);
+    const auto drawn = [&](const SurfelCloud& cloud, const CameraView& camera) {
+        return light_up(*device, **make_engine("paths"), cloud, camera, options_).radiance;
+    };
+    for (const bool moving : {false, true}) {
+        options_.moving = moving;
+        options_.lights = {lamp(1.2f)};
+        options_.bake_offset = glm::vec3(0.0f);
+        const auto here = drawn(*cloud_, camera_);
+        options_.lights = {
+            scenes::spot(offset + glm::vec3(1.2f, .9f, 1.7f), offset + glm::vec3(1, 1, 0), .6f, .6f, 5)};
+        options_.bake_offset = offset;
+        const auto error = compare_images(drawn(elsewhere, from), here);
+        ASSERT_TRUE(error);
+        EXPECT_LT(error->rel_mse, 1e-4) << moving;
+        EXPECT_LT(std::abs(error->luminance_error), 1e-3) << moving;
+    }
+}
+
 TEST_F(PathsEngine, WithoutABakeItShowsDirectLight) {
     options_.settings.set(kOnlyBounce, 0);
     const Lit direct = draw();
