@@ -41,31 +41,6 @@ glm::vec3 middle_of(uint32_t cell) {
 
 }  // namespace
 
-LobeAlbedo::LobeAlbedo(float exponent) {
-    // Directions about the mirror direction by the density (n + 1) / (2 pi) cos^n.
-    constexpr int kRings = 32, kSectors = 32;
-    for (uint32_t step = 0; step <= kSteps; ++step) {
-        const double cosine = static_cast<double>(step) / kSteps, sine = std::sqrt(1 - cosine * cosine);
-        double sum = 0;
-        for (int ring = 0; ring < kRings; ++ring) {
-            const double height = std::pow((ring + .5) / kRings, 1.0 / (exponent + 1.0));
-            const double radius = std::sqrt(1 - height * height);
-            for (int sector = 0; sector < kSectors; ++sector)
-                sum += std::max(
-                    0.0,
-                    height * cosine +
-                        radius * std::cos(2 * static_cast<double>(kPi) * (sector + .5) / kSectors) * sine);
-        }
-        values_[step] = static_cast<float>((exponent + 2.0) / (exponent + 1.0) * sum / (kRings * kSectors));
-    }
-}
-
-float LobeAlbedo::at(float cosine) const {
-    const float place = std::clamp(cosine, 0.0f, 1.0f) * kSteps;
-    const auto step = std::min(static_cast<uint32_t>(place), kSteps - 1);
-    return glm::mix(values_[step], values_[step + 1], place - static_cast<float>(step));
-}
-
 ArrivingLight::ArrivingLight(std::shared_ptr<const PathsBake> bake) : bake_(std::move(bake)) {
     for (uint32_t cell = 0; cell < kCells; ++cell) directions_[cell] = middle_of(cell);
     const LightPaths& paths = bake_->paths;
@@ -85,8 +60,8 @@ ArrivingLight::ArrivingLight(std::shared_ptr<const PathsBake> bake) : bake_(std:
     });
 }
 
-void ArrivingLight::set(std::span<const glm::vec3> radiosity, const PointSky* sky,
-                        std::span<const Material> materials) {
+void ArrivingLight::set(std::span<const glm::vec3> radiosity, std::span<const glm::vec3> of_lobes,
+                        const PointSky* sky, std::span<const Material> materials) {
     const LightPaths& paths = bake_->paths;
     light_.assign(paths.points.size() * kCells, glm::vec3(0.0f));
     parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
@@ -98,22 +73,20 @@ void ArrivingLight::set(std::span<const glm::vec3> radiosity, const PointSky* sk
                     if (sky) light += kPi * sky->radiance(point, open++);
                 } else if (!radiosity.empty()) {
                     light += radiosity[paths.rays[ray]];
+                    if (!of_lobes.empty()) light += of_lobes[ray];
                 }
             }
         }
     });
-    for (const Material& material : materials) {
-        const Reflectance r = make_reflectance(material, glm::vec3(0.0f));
-        if (r.ks > 0) albedos_.try_emplace(r.exponent, r.exponent);
-    }
+    albedos_.take(materials);
 }
 
 glm::vec3 ArrivingLight::reflected(std::span<const PointShare> about, const glm::vec3& irradiance,
                                    const Reflectance& surface, const glm::vec3& normal,
                                    const glm::vec3& to) const {
     const float cosine = glm::dot(normal, to);
-    const auto albedo = albedos_.find(surface.exponent);
-    if (cosine <= 0 || albedo == albedos_.end()) return glm::vec3(0.0f);
+    const LobeAlbedo* albedo = albedos_.find(surface.exponent);
+    if (cosine <= 0 || !albedo) return glm::vec3(0.0f);
     const glm::vec3 mirror = 2 * cosine * normal - to;
     const float exponent = narrowed(surface.exponent);
     glm::vec3 light(0.0f);
@@ -130,7 +103,7 @@ glm::vec3 ArrivingLight::reflected(std::span<const PointShare> about, const glm:
         }
     }
     const glm::vec3 mean = rays > kLeastRays ? light / rays : irradiance;
-    return surface.ks * albedo->second.at(cosine) / kPi * mean;
+    return surface.ks * albedo->at(cosine) / kPi * mean;
 }
 
 }  // namespace lucarne::gi::paths

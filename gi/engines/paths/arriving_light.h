@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -11,23 +10,11 @@
 
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/interpolation.h"
+#include "gi/engines/paths/lobe_albedo.h"
 #include "gi/engines/paths/point_sky.h"
 #include "gi/shared/brdf.h"
 
 namespace lucarne::gi::paths {
-
-/// The share of even light that a lobe with ks = 1 reflects, for any direction of the light that leaves: the
-/// integral of specular_brdf() times the cosine.
-class LobeAlbedo {
- public:
-    explicit LobeAlbedo(float exponent);
-    /// `cosine`: of the angle between the normal and the direction in which the light leaves.
-    float at(float cosine) const;
-
- private:
-    static constexpr uint32_t kSteps = 32;
-    std::array<float, kSteps + 1> values_{};
-};
 
 /// Light that arrives at gathering points, sorted by direction, for what glossy surfaces reflect of it. Yue
 /// et al. 2007 keep 128 directions; here these are the cells of an octahedral map of kSide x kSide. Lobes are
@@ -39,9 +26,11 @@ class ArrivingLight {
     static constexpr float kLargestExponent = kCells / 4;
 
     explicit ArrivingLight(std::shared_ptr<const PathsBake> bake);
-    /// Takes the radiosity of all groups, W/m^2 (empty: they are dark), and the light of a sky (null: none),
-    /// and notes which lobes are asked for.
-    void set(std::span<const glm::vec3> radiosity, const PointSky* sky, std::span<const Material> materials);
+    /// Takes the radiosity of all groups, W/m^2 (empty: they are dark), what lobes send along each ray
+    /// besides (Relight::lobe_light(); may be empty), and the light of a sky (null: none), and notes which
+    /// lobes are asked for.
+    void set(std::span<const glm::vec3> radiosity, std::span<const glm::vec3> of_lobes, const PointSky* sky,
+             std::span<const Material> materials);
 
     /// Returns the radiance that a surface reflects by its lobe in the direction `to`. `about`: its gathering
     /// points, whose mean irradiance is `irradiance`, W/m^2. The material must be one of set().
@@ -54,7 +43,7 @@ class ArrivingLight {
     std::vector<uint8_t> rays_in_;  ///< of each cell of each point
     std::vector<glm::vec3> light_;  ///< of each cell of each point: sum of the radiosities that its rays meet
     std::array<glm::vec3, kCells> directions_{};
-    std::map<float, LobeAlbedo> albedos_;  ///< by exponent
+    LobeAlbedos albedos_;
 };
 
 }  // namespace lucarne::gi::paths

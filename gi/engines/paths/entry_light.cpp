@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "gi/gl_frame.h"
 #include "gi/lighting/nested_views.h"
 #include "gi/lighting/surfel_light.h"
 #include "gi/shared/flat_surfel.h"
 #include "gi/shared/light.h"
+#include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
@@ -95,10 +98,35 @@ void EntryLight::trace(Frame& frame, const LightView& view, const tracing::Surfe
     });
 }
 
-Result<std::vector<glm::vec3>> EntryLight::irradiance(Frame& frame, std::span<const LightView> views,
-                                                      LightGBuffers& gbuffers, bool any_state,
-                                                      const tracing::SurfelTracer* tracer) {
-    std::vector<glm::vec3> sum(bake_->entries.size(), glm::vec3(0.0f));
+/// Adds the luminance of the irradiance by these views times the mean direction that it comes from. Of
+/// several lights the mean is that without shadows, since they are not known apart.
+void EntryLight::add_directions(const Frame& frame, std::span<const LightView> views,
+                                std::span<const glm::vec3> irradiance, std::span<glm::vec3> sum) const {
+    parallel_ranges(sum.size(), kEntriesATask, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            if (irradiance[i] == glm::vec3(0.0f)) continue;
+            const Entry& entry = bake_->entries[i];
+            float light = 0;
+            glm::vec3 directions(0.0f);
+            for (auto rest = views; !rest.empty(); rest = rest.subspan(views_of_one(rest))) {
+                glm::vec3 in;
+                const float own = luminance(
+                    light_irradiance(rest[0].light, entry.position + frame.bake_offset, entry.normal, in));
+                light += own;
+                if (own > 0) directions += own * in;
+            }
+            if (light > 0) sum[i] += luminance(irradiance[i]) / light * directions;
+        }
+    });
+}
+
+Result<LampLight> EntryLight::light(Frame& frame, std::span<const LightView> views, LightGBuffers& gbuffers,
+                                    bool any_state, const tracing::SurfelTracer* tracer,
+                                    bool wants_directions) {
+    LampLight all;
+    std::vector<glm::vec3>& sum = all.irradiance;
+    sum.assign(bake_->entries.size(), glm::vec3(0.0f));
+    if (wants_directions) all.directions.assign(sum.size(), glm::vec3(0.0f));
     std::vector<Kept> kept;
     size_t lights = 0;
     for (size_t i = 0; i < views.size(); i += views_of_one(views.subspan(i))) ++lights;
@@ -126,15 +154,18 @@ Result<std::vector<glm::vec3>> EntryLight::irradiance(Frame& frame, std::span<co
             } else {
                 LUCARNE_ASSIGN(irradiance, compute(frame, own, gbuffers, any_state));
             }
-            if (frame.stopped()) return sum;
+            if (frame.stopped()) return all;
             kept.push_back({light, cut, is_traced, std::move(irradiance)});
         }
         for (size_t i = 0; i < sum.size(); ++i) sum[i] += kept.back().irradiance[i];
+        if (wants_directions) add_directions(frame, own, kept.back().irradiance, all.directions);
         views = views.subspan(own.size());
     }
     if (!keeps) kept.clear();
     kept_ = std::move(kept);
-    return sum;
+    for (size_t i = 0; i < all.directions.size(); ++i)
+        if (const float light = luminance(sum[i]); light > 0) all.directions[i] /= light;
+    return all;
 }
 
 }  // namespace lucarne::gi::paths

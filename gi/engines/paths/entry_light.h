@@ -15,6 +15,13 @@
 
 namespace lucarne::gi::paths {
 
+/// The light of lamps that arrives at entry points.
+struct LampLight {
+    std::vector<glm::vec3> irradiance;  ///< W/m^2
+    /// Unit directions to the lamps, their mean by irradiance. Empty: nobody asked.
+    std::vector<glm::vec3> directions;
+};
+
 /// The light of lamps at entry points, by the lamps' shadow maps or by rays: E and V of Yue et al. 2007, eq.
 /// 8 and 9. Of few lamps each is computed by itself and kept, so a moved lamp repeats its own light only.
 class EntryLight {
@@ -22,12 +29,12 @@ class EntryLight {
     /// Sends entry points to the device unless it has them. `bake`: the one whose entry points they are.
     /// Errors: device memory.
     Result<void> set_entries(Frame& frame, const std::shared_ptr<const PathsBake>& bake);
-    /// Returns the irradiance of each entry point by all these views of lights, W/m^2: shadows by rays of
-    /// `tracer`, or by maps if it is null. `any_state`: shadow maps of an earlier state of their cuts will
-    /// do. Errors: device memory, a shader that fails.
-    Result<std::vector<glm::vec3>> irradiance(Frame& frame, std::span<const LightView> views,
-                                              LightGBuffers& gbuffers, bool any_state,
-                                              const tracing::SurfelTracer* tracer);
+    /// Returns the light of each entry point by all these views of lights: shadows by rays of `tracer`, or by
+    /// maps if it is null. `any_state`: shadow maps of an earlier state of their cuts will do.
+    /// `wants_directions`: what lobes reflect of it depends on them. Errors: device memory, a shader that
+    /// fails.
+    Result<LampLight> light(Frame& frame, std::span<const LightView> views, LightGBuffers& gbuffers,
+                            bool any_state, const tracing::SurfelTracer* tracer, bool wants_directions);
     /// How many lamps the last call computed; the others had not changed.
     size_t computed() const { return computed_; }
 
@@ -42,6 +49,8 @@ class EntryLight {
     Result<std::vector<glm::vec3>> compute(Frame& frame, std::span<const LightView> views,
                                            LightGBuffers& gbuffers, bool any_state);
 
+    void add_directions(const Frame& frame, std::span<const LightView> views,
+                        std::span<const glm::vec3> irradiance, std::span<glm::vec3> sum) const;
     void trace(Frame& frame, const LightView& view, const tracing::SurfelTracer& tracer,
                std::span<glm::vec3> irradiance) const;
 

@@ -39,7 +39,10 @@ constexpr size_t kPointsATask = 256;
 MovedRays::MovedRays(std::shared_ptr<const PathsBake> bake)
     : bake_(std::move(bake)), kept_(std::make_unique<Kept[]>(bake_->paths.points.size())) {}
 
-void MovedRays::set(std::span<const glm::vec3> radiosity) {
+void MovedRays::set(std::span<const glm::vec3> radiosity, std::span<const glm::vec3> of_lobes) {
+    of_lobes_.clear();
+    of_lobes_.reserve(of_lobes.size());
+    for (const glm::vec3& light : of_lobes) of_lobes_.push_back(luminance(light));
     light_.clear();
     light_.reserve(radiosity.size() + 1);
     for (const glm::vec3& light : radiosity) light_.push_back(luminance(light));
@@ -100,7 +103,8 @@ void MovedRays::set_light(uint32_t point, Rays& rays) const {
     const auto dark = static_cast<uint32_t>(light_.size() - 1);
     float sum = 0;
     for (size_t i = 0; i < groups.size(); ++i) {
-        const float light = light_[std::min(groups[i], dark)];
+        float light = light_[std::min(groups[i], dark)];
+        if (!of_lobes_.empty()) light += of_lobes_[size_t{point} * groups.size() + i];
         rays.blocks[i / kLanes].light[i % kLanes] = light;
         sum += light;
     }

@@ -22,8 +22,9 @@ namespace lucarne::gi::paths {
 class MovedRays {
  public:
     explicit MovedRays(std::shared_ptr<const PathsBake> bake);
-    /// Takes the radiosity of all groups, W/m^2.
-    void set(std::span<const glm::vec3> radiosity);
+    /// Takes the radiosity of all groups, W/m^2, and what lobes send along each ray besides
+    /// (Relight::lobe_light(); may be empty).
+    void set(std::span<const glm::vec3> radiosity, std::span<const glm::vec3> of_lobes = {});
     /// Returns how many times as much light arrives at a place as at its gathering points in their mean.
     /// Even light is the same everywhere. `at`: where its rays start, in the bake's coordinates; in a corner
     /// that is before the wall that hides the rim of a disc. Thread-safe.
@@ -41,7 +42,8 @@ class MovedRays {
     const Rays& rays_of(uint32_t point, Rays& own) const;
 
     std::shared_ptr<const PathsBake> bake_;
-    std::vector<float> light_;  ///< luminance of the radiosity of each group; then darkness
+    std::vector<float> light_;     ///< luminance of the radiosity of each group; then darkness
+    std::vector<float> of_lobes_;  ///< luminance of what lobes send along each ray; empty: nothing
     /// The rays of points that pictures have shown, made when they are first asked for.
     struct Kept {
         std::once_flag once;

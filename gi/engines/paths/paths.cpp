@@ -56,6 +56,10 @@ constexpr EngineInfo kInfo{.name = "paths",
 /// At rest, pixels between fewer of the places that gather than this gather themselves.
 constexpr float kLeastBetween = 0.9f;
 
+bool are_glossy(std::span<const Material> materials) {
+    return std::ranges::any_of(materials, [](const Material& m) { return m.diffuse.w > 0; });
+}
+
 class PathsEngine final : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
@@ -186,19 +190,21 @@ const PointSky* PathsEngine::point_sky(const EngineSettings& settings) {
 /// Sets the light of all groups.
 Result<void> PathsEngine::bounce(Frame& frame, const std::vector<LightView>& views, bool any_state) {
     const EngineSettings& s = frame.settings;
-    std::vector<glm::vec3> entering;
+    const std::vector<Material> materials = device_materials(frame.materials);
+    LampLight entering;
     {
         const TimedPass pass(frame, "entry points");
         LUCARNE_TRY(entry_light_.set_entries(frame, relight_->shared_bake()));
-        LUCARNE_ASSIGN(entering, entry_light_.irradiance(frame, views, light_gbuffers_, any_state,
-                                                         traces_shadows(frame) ? tracer_.get() : nullptr));
+        LUCARNE_ASSIGN(entering, entry_light_.light(frame, views, light_gbuffers_, any_state,
+                                                    traces_shadows(frame) ? tracer_.get() : nullptr,
+                                                    are_glossy(materials)));
     }
     if (frame.stopped()) return {};
     const bool only = s[kOnlyBounce] >= 0;
     const auto last = only ? static_cast<uint32_t>(s[kOnlyBounce]) : s[kBounces];
     timed(frame, "photon energies", [&] {
-        relight_->enter(device_materials(frame.materials), entering,
-                        s[kSkyLight] == SkyLight::links ? &even_sky_ : nullptr);
+        relight_->enter(materials, entering.irradiance,
+                        s[kSkyLight] == SkyLight::links ? &even_sky_ : nullptr, entering.directions);
     });
     timed(frame, "bounces", [&] { relight_->bounce({only ? last : 1, last}, s[kTransport]); });
     return {};
@@ -246,13 +252,15 @@ Result<void> PathsEngine::relight(Frame& frame, const std::vector<LightView>& vi
 
 /// Returns the light for glossy surfaces; null if no material is glossy.
 const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const Material> materials) {
-    if (std::ranges::none_of(materials, [](const Material& m) { return m.diffuse.w > 0; })) return nullptr;
+    if (!are_glossy(materials)) return nullptr;
     if (!arriving_) arriving_.emplace(relight_->shared_bake());
     if (std::exchange(arriving_is_old_, false))
         timed(frame, "light by direction", [&] {
             const std::span radiosity =
                 wants_indirect(frame.settings) ? relight_->radiosity() : std::span<const glm::vec3>();
-            arriving_->set(radiosity, point_sky(frame.settings), materials);
+            const std::span of_lobes =
+                wants_indirect(frame.settings) ? relight_->lobe_light() : std::span<const glm::vec3>();
+            arriving_->set(radiosity, of_lobes, point_sky(frame.settings), materials);
         });
     return &*arriving_;
 }
@@ -262,7 +270,7 @@ const ArrivingLight* PathsEngine::arriving_light(Frame& frame, std::span<const M
 const MovedRays* PathsEngine::moved_rays(Frame& frame) {
     if (!traces_shadows(frame) || !wants_indirect(frame.settings)) return nullptr;
     if (!moved_) moved_.emplace(relight_->shared_bake());
-    if (std::exchange(moved_is_old_, false)) moved_->set(relight_->radiosity());
+    if (std::exchange(moved_is_old_, false)) moved_->set(relight_->radiosity(), relight_->lobe_light());
     return &*moved_;
 }
 

@@ -3,14 +3,27 @@
 #include <algorithm>
 #include <utility>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "gi/engines/paths/arriving_light.h"
+#include "gi/engines/paths/cosine_rays.h"
+#include "gi/engines/paths/lobe_albedo.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::paths {
 namespace {
+
+/// Of groups: narrower ones would fall between gathering points, which are too far apart for them.
+constexpr float kLargestLobe = ArrivingLight::kLargestExponent;
+
+template <class Light>
+const Light kDark{};
+template <>
+const glm::vec3 kDark<glm::vec3>{0.0f};
 
 constexpr size_t kGroupsATask = 1024, kPointsATask = 64, kEntriesATask = 4096;
 
@@ -52,7 +65,7 @@ std::vector<glm::vec3> Relight::light_of_sky(const GatherSky& sky) const {
 }
 
 void Relight::enter(std::span<const Material> materials, std::span<const glm::vec3> irradiance,
-                    const GatherSky* sky) {
+                    const GatherSky* sky, std::span<const glm::vec3> directions) {
     const LightPaths& paths = bake_->paths;
     const EntryPoints& points = paths.entries;
     const uint32_t leaves = paths.groups.leaves;
@@ -61,6 +74,11 @@ void Relight::enter(std::span<const Material> materials, std::span<const glm::ve
     reflectances_.assign(leaves, glm::vec3(0.0f));
     std::vector<glm::vec3> of_sky;
     if (sky && !sky->texels.empty()) of_sky = light_of_sky(*sky);
+    LobeAlbedos lobes;
+    lobes.take(materials);
+    lobes_.assign(lobes.empty() || directions.empty() ? 0 : leaves, {});
+    by_lobes_.assign(lobes_.size(), glm::vec3(0.0f));
+    lobe_light_.clear();
     parallel_ranges(leaves, kGroupsATask, [&](size_t begin, size_t end) {
         for (size_t leaf = begin; leaf < end; ++leaf) {
             const uint32_t first = points.first[leaf], last = points.first[leaf + 1];
@@ -71,9 +89,17 @@ void Relight::enter(std::span<const Material> materials, std::span<const glm::ve
                 const Entry& entry = bake_->entries[i];
                 const Material& material = materials[entry.material % materials.size()];
                 const Reflectance r = make_reflectance(material, entry.albedo);
-                const glm::vec3 reflectance = r.kd + r.ks;
-                energies_[i] =
-                    kPi * glm::vec3(material.emission) + reflectance * (irradiance[i] + everywhere);
+                const LobeAlbedo* lobe = r.ks > 0 ? lobes.find(r.exponent) : nullptr;
+                const glm::vec3 reflectance = r.kd + (lobe ? r.ks * lobe->mean() : 0);
+                glm::vec3 of_lamps = reflectance * irradiance[i];
+                if (lobe && !lobes_.empty()) {
+                    const glm::vec3 by_lobe =
+                        r.ks * lobe->at(glm::dot(directions[i], entry.normal)) * irradiance[i];
+                    of_lamps = r.kd * irradiance[i] + by_lobe;
+                    by_lobes_[leaf] += share * by_lobe;
+                    lobes_[leaf] += LampLobe::of(r, entry.normal, directions[i], irradiance[i]) * share;
+                }
+                energies_[i] = kPi * glm::vec3(material.emission) + of_lamps + reflectance * everywhere;
                 first_[leaf] += share * energies_[i];
                 reflectances_[leaf] += share * reflectance;
             }
@@ -82,7 +108,8 @@ void Relight::enter(std::span<const Material> materials, std::span<const glm::ve
 }
 
 /// Sets the light of larger groups to the mean of their children, by area.
-void Relight::coarsen(std::vector<glm::vec3>& light) const {
+template <class Light>
+void Relight::coarsen(std::vector<Light>& light) const {
     const Groups& groups = bake_->paths.groups;
     light.resize(groups.count());
     uint32_t begin = groups.leaves;
@@ -90,10 +117,12 @@ void Relight::coarsen(std::vector<glm::vec3>& light) const {
         parallel_ranges(end - begin, kGroupsATask, [&](size_t first, size_t last) {
             for (size_t i = begin + first; i < begin + last; ++i) {
                 const size_t larger = i - groups.leaves;
-                glm::vec3 sum(0.0f);
-                for (uint32_t c = groups.first[larger]; c < groups.first[larger + 1]; ++c)
-                    sum += groups.area[groups.children[c]] * light[groups.children[c]];
-                light[i] = groups.area[i] > 0 ? sum / groups.area[i] : glm::vec3(0.0f);
+                const auto children =
+                    std::span(groups.children)
+                        .subspan(groups.first[larger], groups.first[larger + 1] - groups.first[larger]);
+                Light sum = kDark<Light>;
+                for (const uint32_t child : children) sum += light[child] * groups.area[child];
+                light[i] = groups.area[i] > 0 ? sum / groups.area[i] : kDark<Light>;
             }
         });
         begin = end;
@@ -175,6 +204,7 @@ void Relight::bounce(const Bounces& bounces, Transport transport) {
         coarsen(light);
         if (bounce >= bounces.first)
             for (size_t i = 0; i < sum_.size(); ++i) sum_[i] += light[i];
+        if (bounce == 1 && bounces.first == 1 && !lobes_.empty()) shine_by_lobes();
         if (bounce == bounces.last) break;
         if (transport == Transport::photons) {
             if (bounce == kVertices) break;
@@ -186,15 +216,42 @@ void Relight::bounce(const Bounces& bounces, Transport transport) {
     }
 }
 
+/// Takes the part of lobes from the light that leaves evenly, and gives each gathering ray that of its group.
+void Relight::shine_by_lobes() {
+    const LightPaths& paths = bake_->paths;
+    std::vector<glm::vec3> even = by_lobes_;
+    coarsen(even);
+    for (size_t i = 0; i < sum_.size(); ++i) sum_[i] = glm::max(sum_[i] - even[i], 0.0f);
+    std::vector<LampLobe> of_groups = lobes_;
+    coarsen(of_groups);
+    std::vector<MeanLobe> lobes;
+    lobes.reserve(of_groups.size());
+    for (const LampLobe& lobe : of_groups) lobes.emplace_back(lobe, kLargestLobe);
+    lobe_light_.assign(paths.rays.size(), glm::vec3(0.0f));
+    parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const GatheringPoint& point = paths.points[i];
+            const CosineDirections directions(point.normal, bake_->seed, point.side);
+            for (uint32_t ray = 0; ray < paths.rays_a_point; ++ray)
+                if (const uint32_t group = paths.rays[i * paths.rays_a_point + ray]; group != kNone)
+                    lobe_light_[i * paths.rays_a_point + ray] = lobes[group].radiosity(-directions[ray]);
+        }
+    });
+}
+
 std::vector<glm::vec3> Relight::gather() const {
     const LightPaths& paths = bake_->paths;
     std::vector<glm::vec3> irradiance(paths.points.size());
     const float share = 1 / static_cast<float>(paths.rays_a_point);
     const LightOfGroups light(sum_);
     parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
+        for (size_t i = begin; i < end; ++i) {
             irradiance[i] =
                 share * light.sum(std::span(paths.rays).subspan(i * paths.rays_a_point, paths.rays_a_point));
+            if (lobe_light_.empty()) continue;
+            for (uint32_t ray = 0; ray < paths.rays_a_point; ++ray)
+                irradiance[i] += share * lobe_light_[i * paths.rays_a_point + ray];
+        }
     });
     return irradiance;
 }
