@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/paths/lobe_albedo.h"
-#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/engines/test_lights.h"
 
 namespace lucarne::gi::paths {
 namespace {
