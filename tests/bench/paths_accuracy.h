@@ -35,11 +35,12 @@ inline Result<void> lobes_by_paths(AccuracyTable& table) {
 }
 
 /// Prints the light in a corner that a thin wall at 45 degrees shuts off, beside that in the room (the
-/// paper's figure 12 a is of such leaks).
+/// paper's figure 12 a is of such leaks). Discs leave pores, so the reference has some there as well.
 inline Result<void> sealed_corner(const AccuracyTable& table) {
     const BenchRun& run = table.run();
     LUCARNE_ASSIGN(const Scan lattice, Scan::create("lattice", run.points(300'000), run.folder));
-    for (const std::string engine : {"paths", "vpl", "reference"}) {
+    double through_pores = 0;
+    for (const std::string engine : {"reference", "paths", "vpl"}) {
         double luminance[2] = {};
         for (const bool corner : {false, true}) {
             Stage stage(table.device(), lattice);
@@ -47,12 +48,11 @@ inline Result<void> sealed_corner(const AccuracyTable& table) {
             LUCARNE_ASSIGN(const Stage::Picture picture, stage.picture(engine, stage.settings()));
             luminance[corner ? 1 : 0] = gi::mean_luminance(picture.pixels);
         }
-        fmt::print("{:<38} {:<13} {:.3g} of {:.3g} W/(sr m^2){}\n",
-                   engine == "paths" ? "lattice, the corner that is shut off" : "", engine, luminance[1],
+        if (engine == "reference") through_pores = luminance[1];
+        fmt::print("{:<38} {:<13} {:.3g} of {:.3g} W/(sr m^2) {}\n",
+                   engine == "reference" ? "lattice, the corner that is shut off" : "", engine, luminance[1],
                    luminance[0],
-                   engine != "paths"   ? ""
-                   : luminance[1] == 0 ? ", <= 0 kept"
-                                       : ", <= 0 MISSED");
+                   engine == "paths" ? target_text(luminance[1], 1.1 * through_pores, 1) : std::string());
         std::fflush(stdout);
     }
     return {};
@@ -78,7 +78,7 @@ inline Result<void> accuracy_of_paths(gi::Device& device, const BenchRun& run) {
         Stage stage(device, nave);
         LUCARNE_TRY(stage.open(table.view(scene_file("nave"), camera)));
         LUCARNE_TRY(table.row(stage, {.name = "nave, " + camera + ", bounces 0 to 3",
-                                      .targets = {{camera == "altar" ? .04 : .02, .03}}}));
+                                      .targets = {{camera == "altar" ? .04 : .02, 0, .03}}}));
     }
     LUCARNE_TRY(day_by_paths(table, nave, "nave-sky", "nave"));
     if (run.trial()) return {};
