@@ -96,7 +96,10 @@ void follow(const LightTrack& track, gi::SceneLight& light, double time) {
     if (!track.position.empty()) light.position = curve_at(track.position, time);
     if (!track.target.empty()) light.target = curve_at(track.target, time);
     if (light.kind == gi::LightKind::point) light.target = light.position - dvec3(0, 0, 1);
-    if (light.target == light.position) light.target = light.position + axis;
+    if (light.target != light.position) return;
+    // Of length about 1, so that far from the origin it is not lost by rounding.
+    const dvec3 size = glm::abs(axis);
+    light.target = light.position + axis / std::max({size.x, size.y, size.z});
 }
 
 /// Returns a vector as JSON.

@@ -113,6 +113,12 @@ TEST(LightTracks, ALampThatMeetsItsTargetKeepsItsDirection) {
     for (const double time : {1.0, 2.0, 3.0}) tracks.light(scene, time);
     const dvec3 axis = spot(scene).target - spot(scene).position;
     EXPECT_LT(glm::distance(glm::normalize(axis), dvec3(0, 0, -1)), 1e-9);
+    // Far from the origin, and nearly met before.
+    const LightTracks far = tracks_of(R"("lights": [{"name": "spot", "keys": [
+        {"time": 0, "position": [0, 0, 1e-9], "target": [0, 0, 0]},
+        {"time": 2, "position": [1e9, 1e9, 1e9], "target": [1e9, 1e9, 1e9]}]}])");
+    for (const double time : {0.0, 2.0}) far.light(scene, time);
+    EXPECT_NE(spot(scene).target, spot(scene).position);
 }
 
 TEST(LightTracks, TheSunsDayRunsEvenlyAndSkyAndStrengthFollow) {
