@@ -27,6 +27,7 @@ class MeanLobe {
     MeanLobe() = default;
     /// Lobes narrower than `largest_exponent` are taken to be as wide.
     MeanLobe(const LampLobe& lobe, float largest_exponent);
+    bool shines() const { return peak_ != glm::vec3(0.0f); }
     /// Returns the light that leaves towards a unit direction, as the radiosity of a diffuse surface that
     /// looks as bright from there, W/m^2.
     glm::vec3 radiosity(const glm::vec3& to) const;

@@ -233,7 +233,8 @@ void Relight::shine_by_lobes() {
             const GatheringPoint& point = paths.points[i];
             const CosineDirections directions(point.normal, bake_->seed, point.side);
             for (uint32_t ray = 0; ray < paths.rays_a_point; ++ray)
-                if (const uint32_t group = paths.rays[i * paths.rays_a_point + ray]; group != kNone)
+                if (const uint32_t group = paths.rays[i * paths.rays_a_point + ray];
+                    group != kNone && lobes[group].shines())
                     lobe_light_[i * paths.rays_a_point + ray] = lobes[group].radiosity(-directions[ray]);
         }
     });
