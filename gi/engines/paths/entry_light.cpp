@@ -101,11 +101,13 @@ void EntryLight::trace(Frame& frame, const LightView& view, const tracing::Surfe
 /// Adds the luminance of the irradiance by these views times the mean direction that it comes from. Of
 /// several lights the mean is that without shadows, since they are not known apart.
 void EntryLight::add_directions(const Frame& frame, std::span<const LightView> views,
-                                std::span<const glm::vec3> irradiance, std::span<glm::vec3> sum) const {
+                                std::span<const Material> materials, std::span<const glm::vec3> irradiance,
+                                std::span<glm::vec3> sum) const {
     parallel_ranges(sum.size(), kEntriesATask, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
-            if (irradiance[i] == glm::vec3(0.0f)) continue;
             const Entry& entry = bake_->entries[i];
+            const bool has_lobe = materials[entry.material % materials.size()].diffuse.w > 0;
+            if (!has_lobe || irradiance[i] == glm::vec3(0.0f)) continue;
             float light = 0;
             glm::vec3 directions(0.0f);
             for (auto rest = views; !rest.empty(); rest = rest.subspan(views_of_one(rest))) {
@@ -122,11 +124,11 @@ void EntryLight::add_directions(const Frame& frame, std::span<const LightView> v
 
 Result<LampLight> EntryLight::light(Frame& frame, std::span<const LightView> views, LightGBuffers& gbuffers,
                                     bool any_state, const tracing::SurfelTracer* tracer,
-                                    bool wants_directions) {
+                                    std::span<const Material> materials) {
     LampLight all;
     std::vector<glm::vec3>& sum = all.irradiance;
     sum.assign(bake_->entries.size(), glm::vec3(0.0f));
-    if (wants_directions) all.directions.assign(sum.size(), glm::vec3(0.0f));
+    if (!materials.empty()) all.directions.assign(sum.size(), glm::vec3(0.0f));
     std::vector<Kept> kept;
     size_t lights = 0;
     for (size_t i = 0; i < views.size(); i += views_of_one(views.subspan(i))) ++lights;
@@ -158,7 +160,7 @@ Result<LampLight> EntryLight::light(Frame& frame, std::span<const LightView> vie
             kept.push_back({light, cut, is_traced, std::move(irradiance)});
         }
         for (size_t i = 0; i < sum.size(); ++i) sum[i] += kept.back().irradiance[i];
-        if (wants_directions) add_directions(frame, own, kept.back().irradiance, all.directions);
+        if (!materials.empty()) add_directions(frame, own, materials, kept.back().irradiance, all.directions);
         views = views.subspan(own.size());
     }
     if (!keeps) kept.clear();

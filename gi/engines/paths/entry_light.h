@@ -19,6 +19,7 @@ namespace lucarne::gi::paths {
 struct LampLight {
     std::vector<glm::vec3> irradiance;  ///< W/m^2
     /// Unit directions to the lamps, their mean by irradiance. Empty: nobody asked.
+    /// Zero where surfaces have no lobe.
     std::vector<glm::vec3> directions;
 };
 
@@ -31,10 +32,11 @@ class EntryLight {
     Result<void> set_entries(Frame& frame, const std::shared_ptr<const PathsBake>& bake);
     /// Returns the light of each entry point by all these views of lights: shadows by rays of `tracer`, or by
     /// maps if it is null. `any_state`: shadow maps of an earlier state of their cuts will do.
-    /// `wants_directions`: what lobes reflect of it depends on them. Errors: device memory, a shader that
-    /// fails.
+    /// `materials`: of surfels, if the directions at those with lobes are wanted; else empty. Errors: device
+    /// memory, a shader that fails.
     Result<LampLight> light(Frame& frame, std::span<const LightView> views, LightGBuffers& gbuffers,
-                            bool any_state, const tracing::SurfelTracer* tracer, bool wants_directions);
+                            bool any_state, const tracing::SurfelTracer* tracer,
+                            std::span<const Material> materials);
     /// How many lamps the last call computed; the others had not changed.
     size_t computed() const { return computed_; }
 
@@ -50,7 +52,8 @@ class EntryLight {
                                            LightGBuffers& gbuffers, bool any_state);
 
     void add_directions(const Frame& frame, std::span<const LightView> views,
-                        std::span<const glm::vec3> irradiance, std::span<glm::vec3> sum) const;
+                        std::span<const Material> materials, std::span<const glm::vec3> irradiance,
+                        std::span<glm::vec3> sum) const;
     void trace(Frame& frame, const LightView& view, const tracing::SurfelTracer& tracer,
                std::span<glm::vec3> irradiance) const;
 

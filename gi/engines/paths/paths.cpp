@@ -195,9 +195,10 @@ Result<void> PathsEngine::bounce(Frame& frame, const std::vector<LightView>& vie
     {
         const TimedPass pass(frame, "entry points");
         LUCARNE_TRY(entry_light_.set_entries(frame, relight_->shared_bake()));
-        LUCARNE_ASSIGN(entering, entry_light_.light(frame, views, light_gbuffers_, any_state,
-                                                    traces_shadows(frame) ? tracer_.get() : nullptr,
-                                                    are_glossy(materials)));
+        LUCARNE_ASSIGN(entering,
+                       entry_light_.light(frame, views, light_gbuffers_, any_state,
+                                          traces_shadows(frame) ? tracer_.get() : nullptr,
+                                          are_glossy(materials) ? materials : std::span<const Material>()));
     }
     if (frame.stopped()) return {};
     const bool only = s[kOnlyBounce] >= 0;
