@@ -65,7 +65,7 @@ class TracedLights::Rays {
         // Most points face no light, or few, so the start of rays is found when it is needed.
         if (!start_) {
             const glm::vec3 above = tracing::offset_origin(point_.position, point_.normal, point_.radius);
-            start_ = tracing::before_what_hides(tracer_, above, point_.viewer, point_.radius);
+            start_ = tracing::before_what_hides(tracer_, above, point_.viewer, point_.normal, point_.radius);
         }
         return std::isinf(distance) ? !tracer_.occluded_along(*start_, direction)
                                     : !tracer_.occluded(*start_, point_.position + direction * distance);

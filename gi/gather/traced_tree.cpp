@@ -44,7 +44,7 @@ Result<TracedTree> TracedTree::create(const Frame& frame, const LitTree& scene) 
 
 glm::vec3 ray_start(const tracing::SurfelTracer& tracer, const GatherPoint& point) {
     const glm::vec3 above = tracing::offset_origin(point.position, point.normal, point.lift);
-    return tracing::before_what_hides(tracer, above, point.viewer, point.lift);
+    return tracing::before_what_hides(tracer, above, point.viewer, point.normal, point.lift);
 }
 
 }  // namespace lucarne::gi

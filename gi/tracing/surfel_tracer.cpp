@@ -150,6 +150,9 @@ bool any_hit(RTCScene scene, RTCRay ray) {
     return ray.tfar < 0;  // Embree sets it to -infinity on a hit
 }
 
+/// Cosine between a point's normal and that of a disc over it which is another layer of the same surface.
+constexpr float kSameSheet = 0.8f;
+
 }  // namespace
 
 bool SurfelTracer::occluded(const glm::vec3& from, const glm::vec3& to) const {
@@ -192,16 +195,22 @@ glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, floa
 }
 
 glm::vec3 before_what_hides(const SurfelTracer& surfels, const glm::vec3& origin, const glm::vec3& viewer,
-                            float radius) {
-    const auto hit = surfels.nearest(origin, viewer);
-    if (!hit) return origin;
-    const Surfel& surfel = surfels.surfels()[*hit];
-    const float side = glm::dot(surfel.normal, viewer);
-    if (side == 0) return origin;
-    const float distance = glm::dot(surfel.normal, surfel.position - origin) / side;
-    if (distance > 2 * std::max(radius, surfel.radius)) return origin;  // another object in front of it
-    return offset_origin(origin + viewer * distance, side > 0 ? surfel.normal : -surfel.normal,
-                         surfel.radius);
+                            const glm::vec3& normal, float radius) {
+    // The start in front of the surface that is met in a direction, if it is no other object in front of the
+    // point.
+    const auto before = [&](const glm::vec3& direction, float least_cosine) -> std::optional<glm::vec3> {
+        const auto hit = surfels.nearest(origin, direction);
+        if (!hit) return std::nullopt;
+        const Surfel& surfel = surfels.surfels()[*hit];
+        const float side = glm::dot(surfel.normal, direction);
+        if (std::abs(side) <= least_cosine) return std::nullopt;
+        const float distance = glm::dot(surfel.normal, surfel.position - origin) / side;
+        if (distance > 2 * std::max(radius, surfel.radius)) return std::nullopt;
+        return offset_origin(origin + direction * distance, side > 0 ? surfel.normal : -surfel.normal,
+                             surfel.radius);
+    };
+    if (const auto start = before(viewer, 0)) return *start;
+    return before(normal, kSameSheet).value_or(origin);
 }
 
 }  // namespace lucarne::gi::tracing

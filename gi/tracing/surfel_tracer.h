@@ -75,8 +75,10 @@ glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, floa
 /// Returns the origin of rays from a point that a picture shows. `origin`: offset_origin() of the point;
 /// `radius`: its surfel's. The G-buffer may show the rim of a disc that lies a little behind another surface
 /// (kRimPush). Such rays have to start on the viewer's side of that surface; otherwise the rims of a sealed
-/// room would be lit from outside.
+/// room would be lit from outside. Where a noisy surface was scanned several times, it may show a disc
+/// between discs of a layer above it (`normal`: of the point, toward the viewer), which would keep all light
+/// from it.
 glm::vec3 before_what_hides(const SurfelTracer& surfels, const glm::vec3& origin, const glm::vec3& viewer,
-                            float radius);
+                            const glm::vec3& normal, float radius);
 
 }  // namespace lucarne::gi::tracing

@@ -20,7 +20,7 @@ constexpr float kTriedTurn = 1.0f;
 
 glm::vec3 start_of_rays(const tracing::SurfelTracer& tracer, const SurfacePoint& place) {
     const glm::vec3 above = tracing::offset_origin(place.position, place.normal, place.radius);
-    return tracing::before_what_hides(tracer, above, place.viewer, place.radius);
+    return tracing::before_what_hides(tracer, above, place.viewer, place.normal, place.radius);
 }
 
 SeenPoints::SeenPoints(const tracing::SurfelTracer& tracer, const PathsBake& bake, const glm::vec3& offset,

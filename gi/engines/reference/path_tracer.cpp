@@ -231,7 +231,7 @@ PathSums PathTracer::trace(const Start& start, uint64_t index, const std::atomic
         return sums;
     }
     Vertex first = vertex(start);
-    first.origin = before_what_hides(surfels_, first.origin, start.viewer, start.radius);
+    first.origin = before_what_hides(surfels_, first.origin, start.viewer, start.normal, start.radius);
     // Emission and sharp light are not sampled: once is enough.
     if (counts(0)) sums.exact = glm::dvec3(first.emission + sharp_light(first));
     if (!anything_random()) return sums;
