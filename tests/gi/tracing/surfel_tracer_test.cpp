@@ -58,6 +58,24 @@ TEST(SurfelTracer, FirstHitsHaveADistanceAndASide) {
     EXPECT_FALSE((*made)->first_hit({0, 0, 1}, {0, 0, 1}));
 }
 
+// A pixel may show a disc of a lower layer beside the line of one above it. It was black.
+TEST(SurfelTracer, RaysStartAboveANearLayerOfTheSameSurfaceAndNotAboveOtherThings) {
+    const glm::vec3 point(0.2f, 0, 0), aslant = glm::normalize(glm::vec3(0.8f, 0, 0.6f));
+    const auto start_below = [&](float height, const glm::vec3& normal) {
+        Surfel over = disc_until(0.25f);
+        over.position.z = height;
+        over.normal = normal;
+        const auto made = SurfelTracer::create({disc_until(0), over});
+        EXPECT_TRUE(made);
+        // The point is seen aslant, past the line of the disc over it.
+        return before_what_hides(**made, offset_origin(point, {0, 0, 1}, 1e-4f), aslant, {0, 0, 1}, 0.5f).z;
+    };
+    EXPECT_GT(start_below(0.3f, {0, 0, 1}), 0.3f);
+    EXPECT_GT(start_below(0.3f, {0, 0, -1}), 0.3f) << "normals of scans may be turned";
+    EXPECT_LT(start_below(2.1f, {0, 0, 1}), 0.01f) << "a shelf";
+    EXPECT_LT(start_below(0.3f, glm::normalize(glm::vec3(0, 1, 0.5f))), 0.01f) << "a thing that leans";
+}
+
 TEST(SurfelTracer, DiscsEndAtTheirRims) {
     for (const glm::vec3& facing : {glm::vec3(0, 0, 1), {0, 0, -1}, {1, 0, 0}, {.3f, -.8f, .5f}}) {
         Surfel disc = disc_until(0);
