@@ -198,19 +198,21 @@ glm::vec3 before_what_hides(const SurfelTracer& surfels, const glm::vec3& origin
                             const glm::vec3& normal, float radius) {
     // The start in front of the surface that is met in a direction, if it is no other object in front of the
     // point.
-    const auto before = [&](const glm::vec3& direction, float least_cosine) -> std::optional<glm::vec3> {
+    const auto before = [&](const glm::vec3& direction, float least_cosine,
+                            float most_radii) -> std::optional<glm::vec3> {
         const auto hit = surfels.nearest(origin, direction);
         if (!hit) return std::nullopt;
         const Surfel& surfel = surfels.surfels()[*hit];
         const float side = glm::dot(surfel.normal, direction);
         if (std::abs(side) <= least_cosine) return std::nullopt;
         const float distance = glm::dot(surfel.normal, surfel.position - origin) / side;
-        if (distance > 2 * std::max(radius, surfel.radius)) return std::nullopt;
+        if (distance > most_radii * std::max(radius, surfel.radius)) return std::nullopt;
         return offset_origin(origin + direction * distance, side > 0 ? surfel.normal : -surfel.normal,
                              surfel.radius);
     };
-    if (const auto start = before(viewer, 0)) return *start;
-    return before(normal, kSameSheet).value_or(origin);
+    if (const auto start = before(viewer, 0, 2)) return *start;
+    // Steps and ledges of coarse scans are parallel, too, and lie farther apart than layers of one surface.
+    return before(normal, kSameSheet, 0.5f).value_or(origin);
 }
 
 }  // namespace lucarne::gi::tracing
