@@ -20,7 +20,7 @@ namespace {
 using glm::dvec3;
 
 // data/README.md states these limits.
-constexpr size_t kMostLights = 64, kMostMaterials = 255, kMostCameras = 1000;
+constexpr size_t kMostMaterials = 255, kMostCameras = 1000;
 constexpr JsonRange kScale{0, 10}, kFovDegrees{1, 170}, kStops{-40, 40}, kShininess{0, 1e6},
     kLuminance{1e-9, 1e15}, kWhite{1e-3, 1e3}, kDifference{1e-6, 1e6};
 

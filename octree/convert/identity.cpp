@@ -12,7 +12,7 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kHeadBytes = 64 << 10;
-constexpr int kRecords = 7;  ///< version of the stages' records (save and restore); raise it with any change
+constexpr int kRecords = 8;  ///< version of the stages' records (save and restore); raise it with any change
 
 /// Empty for sources that are not files.
 std::string file_identity(const std::filesystem::path& path) {

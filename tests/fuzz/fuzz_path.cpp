@@ -18,16 +18,20 @@ bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     }
     if (!path->lights.check(scene)) scene.lights.emplace_back().kind = gi::LightKind::directional;
     if (!path->lights.check(scene)) std::abort();
+    const auto is_finite = [](const glm::dvec3& v) { return std::isfinite(v.x + v.y + v.z); };
+    const gi::Scene base = scene;
     const size_t frames = std::min<size_t>(path->frames(), 100);
     for (size_t i = 0; i < frames; ++i) {
         const double time = path->start() + static_cast<double>(i) / path->frames_per_second;
         const auto camera = path->at(time);
         // A path that is accepted must give finite cameras.
-        if (!std::isfinite(camera.position.x + camera.target.x + camera.up.x + camera.vertical_fov))
+        if (!is_finite(camera.position) || !is_finite(camera.target) || !is_finite(camera.up) ||
+            !std::isfinite(camera.vertical_fov))
             std::abort();
-        if (i % 32 == 0) path->lights.light(scene, time);  // the sky takes long
+        if (i % 32 == 0) path->lights.apply(base, time, scene);  // the sky takes long
         for (const auto& light : scene.lights)
-            if (!std::isfinite(light.position.x + light.strength.x) || light.target == light.position)
+            if (!is_finite(light.position) || !is_finite(light.target) || !is_finite(light.strength) ||
+                light.target == light.position)
                 std::abort();
     }
     return true;

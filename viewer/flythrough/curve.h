@@ -40,7 +40,7 @@ auto curve_at(const std::vector<Key>& keys, double time, const Get& get) {
     };
     // The slope of the parabola through three keys at the middle key.
     const auto tangent = [&](size_t k) {
-        if (rests(k)) return slope(k, k + 1 < keys.size() ? k + 1 : k - 1) * 0.0;
+        if (rests(k)) return get(keys[k]) - get(keys[k]);  // zero, of its type
         if (k == 0) return slope(0, 1);
         if (k + 1 == keys.size()) return slope(k - 1, k);
         const double before = keys[k].time - keys[k - 1].time, after = keys[k + 1].time - keys[k].time;

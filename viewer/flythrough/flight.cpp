@@ -168,7 +168,7 @@ struct Flying {
 
     Result<void> draw(double time, size_t lap) {
         if (!path.lights.empty()) {
-            path.lights.light(scene, time);
+            path.lights.apply(options.scene, time, scene);
             LUCARNE_TRY(pipeline.set_scene(scene));
         }
         FrameRequest request;

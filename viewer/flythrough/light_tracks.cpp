@@ -19,12 +19,10 @@ namespace {
 
 using glm::dvec3;
 
-constexpr size_t kMostTracks = 64;  ///< as many as a scene has lights
 constexpr size_t kMostLightKeys = 10000;
-
-tl::unexpected<Error> too_early(const JsonObject& key, double before) {
-    return key.wrong(fmt::format("must be later than {} s, the time of the key before", before), "time");
-}
+constexpr JsonRange kSeconds{0, 1e5};
+/// s. Curves through keys that are nearer to each other would be too steep for numbers.
+constexpr double kLeastStep = 1e-3;
 
 Result<void> read_vector(JsonObject& object, std::string_view name, double time, JsonRange range,
                          std::vector<Timed<dvec3>>& keys) {
@@ -40,17 +38,16 @@ bool says_anything(const LightTrack& track, double time) {
     return ends(track.position) || ends(track.target) || ends(track.strength) || ends(track.on);
 }
 
-Result<LightTrack> read_track(JsonObject& object, JsonRange seconds) {
+Result<LightTrack> read_track(JsonObject& object) {
     LightTrack track;
     LUCARNE_ASSIGN(track.name, object.text("name"));
     if (track.name.empty()) return object.wrong("names no light", "name");
     LUCARNE_ASSIGN(std::vector<JsonObject> keys, object.objects("keys", kMostLightKeys));
     LUCARNE_TRY(object.finish());
     if (keys.empty()) return object.wrong("must hold at least one key", "keys");
-    double before = -1;
+    std::optional<double> before;
     for (JsonObject& key : keys) {
-        LUCARNE_ASSIGN(const double time, key.number("time", seconds));
-        if (!(time > before)) return too_early(key, before);
+        LUCARNE_ASSIGN(const double time, read_key_time(key, before));
         before = time;
         LUCARNE_TRY(read_vector(key, "position", time, gi::kCoordinate, track.position));
         LUCARNE_TRY(read_vector(key, "target", time, gi::kCoordinate, track.target));
@@ -65,9 +62,9 @@ Result<LightTrack> read_track(JsonObject& object, JsonRange seconds) {
     return track;
 }
 
-Result<Timed<gi::Moment>> read_clock(JsonObject& key, JsonRange seconds) {
+Result<Timed<gi::Moment>> read_clock(JsonObject& key, std::optional<double> before) {
     Timed<gi::Moment> read;
-    LUCARNE_ASSIGN(read.time, key.number("time", seconds));
+    LUCARNE_ASSIGN(read.time, read_key_time(key, before));
     LUCARNE_ASSIGN(const std::string clock, key.text("clock"));
     LUCARNE_TRY(key.finish());
     const auto moment = gi::parse_time(clock);
@@ -86,19 +83,24 @@ gi::Moment moment_at(const std::vector<Timed<gi::Moment>>& keys, double time) {
     return moment;
 }
 
-void follow(const LightTrack& track, gi::SceneLight& light, double time) {
+/// A point of a curve, which may leave the range of its keys.
+dvec3 within(JsonRange range, const std::vector<Timed<dvec3>>& keys, double time) {
+    return glm::clamp(curve_at(keys, time), range.least, range.most);
+}
+
+void follow(const LightTrack& track, const gi::SceneLight& base, double time, gi::SceneLight& light) {
     if (!track.on.empty()) light.on = track.on[key_before(track.on, time)].value;
     if (!track.strength.empty()) {
         light.daylight = false;
-        light.strength = glm::max(curve_at(track.strength, time), 0.0);  // curves overshoot
+        light.strength = within(gi::kRadiance, track.strength, time);
     }
-    const dvec3 axis = light.target - light.position;
-    if (!track.position.empty()) light.position = curve_at(track.position, time);
-    if (!track.target.empty()) light.target = curve_at(track.target, time);
+    if (track.position.empty() && track.target.empty()) return;
+    light.position = track.position.empty() ? base.position : within(gi::kCoordinate, track.position, time);
+    light.target = track.target.empty() ? base.target : within(gi::kCoordinate, track.target, time);
     if (light.kind == gi::LightKind::point) light.target = light.position - dvec3(0, 0, 1);
     if (light.target != light.position) return;
     // Of length about 1, so that far from the origin it is not lost by rounding.
-    const dvec3 size = glm::abs(axis);
+    const dvec3 axis = base.target - base.position, size = glm::abs(axis);
     light.target = light.position + axis / std::max({size.x, size.y, size.z});
 }
 
@@ -128,32 +130,43 @@ Result<void> LightTracks::check(const gi::Scene& scene) const {
     return {};
 }
 
-void LightTracks::light(gi::Scene& scene, double time) const {
+void LightTracks::apply(const gi::Scene& base, double time, gi::Scene& scene) const {
     if (!sun.empty()) {
         const auto light = std::ranges::find(scene.lights, gi::LightKind::directional, &gi::SceneLight::kind);
         gi::SunMoment moment = light->sun.value_or(gi::SunMoment{});
         moment.time = moment_at(sun, time);
         set_daytime(scene, moment);
     }
-    for (const LightTrack& track : lights)
-        follow(track, *std::ranges::find(scene.lights, track.name, &gi::SceneLight::name), time);
+    for (const LightTrack& track : lights) {
+        const auto light = std::ranges::find(scene.lights, track.name, &gi::SceneLight::name);
+        follow(track, base.lights[static_cast<size_t>(light - scene.lights.begin())], time, *light);
+    }
 }
 
-Result<LightTracks> read_light_tracks(JsonObject& flythrough, JsonRange seconds) {
+Result<double> read_key_time(JsonObject& key, std::optional<double> before) {
+    LUCARNE_ASSIGN(const double time, key.number("time", kSeconds));
+    if (before && !(time >= *before + kLeastStep))
+        return key.wrong(
+            fmt::format("must be later than {} s, the time of the key before, by {} s", *before, kLeastStep),
+            "time");
+    return time;
+}
+
+Result<LightTracks> read_light_tracks(JsonObject& flythrough) {
     LightTracks tracks;
-    LUCARNE_ASSIGN(std::vector<JsonObject> lights, flythrough.objects("lights", kMostTracks));
+    LUCARNE_ASSIGN(std::vector<JsonObject> lights, flythrough.objects("lights", gi::kMostLights));
     std::set<std::string> names;
     for (JsonObject& object : lights) {
-        LUCARNE_ASSIGN(LightTrack track, read_track(object, seconds));
+        LUCARNE_ASSIGN(LightTrack track, read_track(object));
         if (!names.insert(track.name).second)
             return object.wrong("has keys already: a light has one list of them", "name");
         tracks.lights.push_back(std::move(track));
     }
     LUCARNE_ASSIGN(std::vector<JsonObject> clock, flythrough.objects("sun", kMostLightKeys));
     for (JsonObject& object : clock) {
-        LUCARNE_ASSIGN(const Timed<gi::Moment> key, read_clock(object, seconds));
-        if (!tracks.sun.empty() && !(key.time > tracks.sun.back().time))
-            return too_early(object, tracks.sun.back().time);
+        std::optional<double> before;
+        if (!tracks.sun.empty()) before = tracks.sun.back().time;
+        LUCARNE_ASSIGN(const Timed<gi::Moment> key, read_clock(object, before));
         tracks.sun.push_back(key);
     }
     return tracks;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,13 +29,17 @@ struct LightTracks {
     /// Errors: the scene has no light of a track's name, or several; a directional light would have to move;
     /// there is no sun whose time could run.
     Result<void> check(const gi::Scene& scene) const;
-    /// Lights a scene, for which check() holds, as it is at a time of the flight. The sun goes as by
-    /// set_daytime(). A lamp whose position meets its target keeps its direction.
-    void light(gi::Scene& scene, double time) const;
+    /// Lights `scene`, which differs from `base` by what tracks have changed before alone, as it is at a time
+    /// of the flight, whatever the time before was; check() must hold for it. The sun goes as by
+    /// set_daytime(), which costs a picture of the sky if its second is another one. A lamp whose position
+    /// meets its target has the direction of `base`.
+    void apply(const gi::Scene& base, double time, gi::Scene& scene) const;
 };
 
-/// Reads the keys "lights" and "sun" of a flythrough. Times: `seconds`.
-Result<LightTracks> read_light_tracks(JsonObject& flythrough, JsonRange seconds);
+/// Reads the time of a key, which must be kLeastStep later than that of the key before, if there is one.
+Result<double> read_key_time(JsonObject& key, std::optional<double> before);
+/// Reads the keys "lights" and "sun" of a flythrough.
+Result<LightTracks> read_light_tracks(JsonObject& flythrough);
 /// Adds these keys to a flythrough, so that they are read back the same.
 void write_light_tracks(const LightTracks& tracks, nlohmann::ordered_json& flythrough);
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
-#include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "gi/scene/scene_limits.h"
 #include "io/files/json.h"
 
 namespace lucarne::viewer {
@@ -14,8 +16,7 @@ namespace {
 
 constexpr size_t kMostKeys = 10000;
 constexpr double kMostFrames = 1e6;
-constexpr JsonRange kSeconds{0, 1e5};
-constexpr double kFarthest = 1e9;  ///< coordinates of any earthly reference system fit
+constexpr JsonRange kDegreesOfView{1, 170};
 
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
@@ -37,14 +38,13 @@ double degrees(double angle) {
     return exact;
 }
 
-Result<KeyFrame> read_key(JsonObject& object) {
-    const JsonRange place{-kFarthest, kFarthest};
+Result<KeyFrame> read_key(JsonObject& object, std::optional<double> before) {
     KeyFrame key;
-    LUCARNE_ASSIGN(key.time, object.number("time", kSeconds));
-    LUCARNE_ASSIGN(key.camera.position, object.vector("position", place));
-    LUCARNE_ASSIGN(key.camera.target, object.vector("target", place));
+    LUCARNE_ASSIGN(key.time, read_key_time(object, before));
+    LUCARNE_ASSIGN(key.camera.position, object.vector("position", gi::kCoordinate));
+    LUCARNE_ASSIGN(key.camera.target, object.vector("target", gi::kCoordinate));
     LUCARNE_ASSIGN(key.camera.up, object.vector("up", {-1e3, 1e3}, glm::dvec3(0, 0, 1)));
-    LUCARNE_ASSIGN(const double fov, object.number("fov", {1, 170}, 60.0));
+    LUCARNE_ASSIGN(const double fov, object.number("fov", kDegreesOfView, 60.0));
     key.camera.vertical_fov = radians(fov);
     LUCARNE_TRY(object.finish());
     if (key.camera.position == key.camera.target) return object.wrong("is where the camera stands", "target");
@@ -65,10 +65,15 @@ gi::SceneCamera CameraPath::at(double time) const {
         return curve_at(keys, time, [&](const KeyFrame& key) { return key.camera.*member; });
     };
     gi::SceneCamera camera = keys[key_before(keys, time)].camera;
-    camera.position = on_curve(&gi::SceneCamera::position);
-    camera.target = on_curve(&gi::SceneCamera::target);
+    // Curves may leave the ranges of their keys.
+    const auto place = [&](auto member) {
+        return glm::clamp(on_curve(member), gi::kCoordinate.least, gi::kCoordinate.most);
+    };
+    camera.position = place(&gi::SceneCamera::position);
+    camera.target = place(&gi::SceneCamera::target);
     camera.up = on_curve(&gi::SceneCamera::up);
-    camera.vertical_fov = on_curve(&gi::SceneCamera::vertical_fov);
+    camera.vertical_fov = std::clamp(on_curve(&gi::SceneCamera::vertical_fov), radians(kDegreesOfView.least),
+                                     radians(kDegreesOfView.most));
     return camera;
 }
 
@@ -79,14 +84,12 @@ Result<CameraPath> parse_path(std::string_view text, const std::string& name) {
     LUCARNE_ASSIGN(path.frames_per_second, root.number("frames_per_second", {0.1, 1000}, 25.0));
     LUCARNE_ASSIGN(std::vector<JsonObject> keys, root.objects("keys", kMostKeys));
     for (JsonObject& object : keys) {
-        LUCARNE_ASSIGN(KeyFrame key, read_key(object));
-        if (!path.keys.empty() && !(key.time > path.keys.back().time))
-            return object.wrong(
-                fmt::format("must be later than {} s, the time of the key before", path.keys.back().time),
-                "time");
+        std::optional<double> before;
+        if (!path.keys.empty()) before = path.keys.back().time;
+        LUCARNE_ASSIGN(KeyFrame key, read_key(object, before));
         path.keys.push_back(std::move(key));
     }
-    LUCARNE_ASSIGN(path.lights, read_light_tracks(root, kSeconds));
+    LUCARNE_ASSIGN(path.lights, read_light_tracks(root));
     LUCARNE_TRY(root.finish());
     if (path.keys.empty()) return root.wrong("must hold at least one key frame", "keys");
     if (path.duration() * path.frames_per_second > kMostFrames)

@@ -8,12 +8,11 @@
 #include <glm/geometric.hpp>
 
 #include "gi/scene/scene_lights.h"
+#include "gi/scene/scene_limits.h"
 #include "gi/scene/sky_model.h"
 
 namespace lucarne::viewer {
 namespace {
-
-constexpr size_t kMostLights = 64;
 
 /// Returns the strength that makes a surface of albedo .5, turned 45 degrees from the light, look mid-grey.
 double fitting_strength(const gi::SceneLight& light, double ev, double metres_per_unit) {
@@ -39,8 +38,8 @@ double fitting_strength(const gi::SceneLight& light, double ev, double metres_pe
 
 void add_light(const Lighting& model, gi::LightKind kind) {
     static constexpr const char* kNames[] = {"spot", "point", "sun", "rectangle", "disc"};
-    if (model.view.scene.lights.size() >= kMostLights) {
-        model.view.message = fmt::format("a scene has at most {} lights", kMostLights);
+    if (model.view.scene.lights.size() >= gi::kMostLights) {
+        model.view.message = fmt::format("a scene has at most {} lights", gi::kMostLights);
         return;
     }
     model.lights.mood.reset();
@@ -71,7 +70,7 @@ void add_light(const Lighting& model, gi::LightKind kind) {
 
 void duplicate_light(const Lighting& model) {
     const gi::SceneLight* light = model.selected_light();
-    if (!light || model.view.scene.lights.size() >= kMostLights) return;
+    if (!light || model.view.scene.lights.size() >= gi::kMostLights) return;
     model.lights.mood.reset();
     gi::SceneLight copy = *light;
     copy.name += " copy";

@@ -51,52 +51,54 @@ TEST(LightTracks, ALampPassesThroughItsKeysAndRestsBetweenEqualOnes) {
     const LightTracks tracks = tracks_of(R"("lights": [{"name": "spot", "keys": [
         {"time": 0, "position": [0.1, 0, 3]}, {"time": 1, "position": [0.7, 0.3, 3]},
         {"time": 4, "position": [0.7, 0.3, 3]}, {"time": 5, "position": [2, 1, 2.2]}]}])");
-    gi::Scene scene = lamps_and_sun();
-    const gi::Scene before = scene;
+    const gi::Scene base = lamps_and_sun();
+    gi::Scene scene = base;
     ASSERT_TRUE(tracks.check(scene));
     const std::pair<double, dvec3> keys[] = {{-1, {.1, 0, 3}}, {0, {.1, 0, 3}},  {1, {.7, .3, 3}},
                                              {4, {.7, .3, 3}}, {5, {2, 1, 2.2}}, {9, {2, 1, 2.2}}};
     for (const auto& [time, place] : keys) {
-        tracks.light(scene, time);
+        tracks.apply(base, time, scene);
         EXPECT_LT(glm::distance(spot(scene).position, place), 1e-12) << time;
-        EXPECT_EQ(spot(scene).target, spot(before).target) << "a lamp that moves shines on the same place";
+        EXPECT_EQ(spot(scene).target, spot(base).target) << "a lamp that moves shines on the same place";
     }
     for (double time = 1; time < 4; time += .013) {
-        tracks.light(scene, time);
+        tracks.apply(base, time, scene);
         EXPECT_EQ(spot(scene).position, dvec3(.7, .3, 3)) << "to the last bit, at " << time;
     }
-    EXPECT_EQ(spot(scene).strength, spot(before).strength);
-    EXPECT_EQ(scene.lights[1], before.lights[1]) << "lights without a track stay as they are";
-    EXPECT_EQ(scene.lights[2], before.lights[2]);
+    EXPECT_EQ(spot(scene).strength, spot(base).strength);
+    EXPECT_EQ(scene.lights[1], base.lights[1]) << "lights without a track stay as they are";
+    EXPECT_EQ(scene.lights[2], base.lights[2]);
 }
 
 TEST(LightTracks, EachQuantityHasKeysOfItsOwn) {
     const LightTracks tracks = tracks_of(R"("lights": [{"name": "bulb", "keys": [
         {"time": 0, "position": [0, 0, 2], "strength": [4, 0, 0]}, {"time": 2, "on": true},
         {"time": 4, "position": [4, 0, 2]}, {"time": 6, "strength": [0, 4, 0], "on": false}]}])");
-    gi::Scene scene = lamps_and_sun();
+    const gi::Scene base = lamps_and_sun();
+    gi::Scene scene = base;
     ASSERT_TRUE(tracks.check(scene)) << "also of a light that is off";
     const gi::SceneLight& bulb = scene.lights[1];
-    tracks.light(scene, 3);
+    tracks.apply(base, 3, scene);
     EXPECT_LT(glm::distance(bulb.position, dvec3(3, 0, 2)), 1e-12);
     EXPECT_LT(glm::distance(bulb.strength, dvec3(2, 2, 0)), 1e-12);
     EXPECT_EQ(bulb.target, bulb.position - dvec3(0, 0, 1)) << "as of every point light";
     EXPECT_TRUE(bulb.on);
-    tracks.light(scene, 6);
+    tracks.apply(base, 6, scene);
     EXPECT_FALSE(bulb.on);
-    tracks.light(scene, 2);
+    tracks.apply(base, 2, scene);
     EXPECT_TRUE(bulb.on) << "time may run backwards";
 }
 
 TEST(LightTracks, StrengthIsNeverNegative) {
-    // The curve through 8, 0, 8 that goes on to 0 passes below zero.
+    // It falls from 8 to .1 in a second and stays near that for red: the curve goes on below zero.
     const LightTracks tracks = tracks_of(R"("lights": [{"name": "spot", "keys": [
         {"time": 0, "strength": [8, 8, 8]}, {"time": 1, "strength": [0.1, 0.1, 0.1]},
         {"time": 9, "strength": [0.2, 8, 8]}]}])");
-    gi::Scene scene = lamps_and_sun();
+    const gi::Scene base = lamps_and_sun();
+    gi::Scene scene = base;
     double least = 1;
     for (double time = 0; time <= 9; time += .05) {
-        tracks.light(scene, time);
+        tracks.apply(base, time, scene);
         const dvec3& strength = spot(scene).strength;
         for (int i = 0; i < 3; ++i) {
             EXPECT_GE(strength[i], 0);
@@ -106,28 +108,66 @@ TEST(LightTracks, StrengthIsNeverNegative) {
     EXPECT_EQ(least, 0) << "it would have been";
 }
 
-TEST(LightTracks, ALampThatMeetsItsTargetKeepsItsDirection) {
+TEST(LightTracks, ALampThatMeetsItsTargetHasTheScenesDirectionAndThenShinesOnTheSamePlaceAgain) {
     const LightTracks tracks = tracks_of(R"("lights": [{"name": "spot", "keys": [
         {"time": 0, "position": [0, 0, 2]}, {"time": 2, "position": [0, 0, 0]}]}])");
-    gi::Scene scene = lamps_and_sun();
-    for (const double time : {1.0, 2.0, 3.0}) tracks.light(scene, time);
-    const dvec3 axis = spot(scene).target - spot(scene).position;
-    EXPECT_LT(glm::distance(glm::normalize(axis), dvec3(0, 0, -1)), 1e-9);
-    // Far from the origin, and nearly met before.
+    const gi::Scene base = lamps_and_sun();
+    gi::Scene scene = base;
+    for (const double time : {1.0, 2.0, 3.0}) tracks.apply(base, time, scene);
+    EXPECT_EQ(spot(scene).target - spot(scene).position, dvec3(0, 0, -1));
+    tracks.apply(base, 1, scene);
+    EXPECT_EQ(spot(scene).target, spot(base).target);
+    gi::Scene alone = base;
+    tracks.apply(base, 1, alone);
+    EXPECT_EQ(scene.lights, alone.lights) << "whatever the times before were";
+    // Far from the origin.
     const LightTracks far = tracks_of(R"("lights": [{"name": "spot", "keys": [
-        {"time": 0, "position": [0, 0, 1e-9], "target": [0, 0, 0]},
-        {"time": 2, "position": [1e9, 1e9, 1e9], "target": [1e9, 1e9, 1e9]}]}])");
-    for (const double time : {0.0, 2.0}) far.light(scene, time);
+        {"time": 0, "position": [1e9, 1e9, 1e9], "target": [1e9, 1e9, 1e9]}]}])");
+    far.apply(base, 0, scene);
     EXPECT_NE(spot(scene).target, spot(scene).position);
+}
+
+// Keys a moment apart followed by ones hours apart made curves that left all ranges, and then all numbers.
+TEST(LightTracks, SteepKeysStayWithinTheRangesOfTheirNumbers) {
+    const auto steep = parse_path(R"({"frames_per_second": 1, "keys": [
+        {"time": 0, "position": [0, 0, 1], "target": [0, 9, 1], "fov": 60},
+        {"time": 0.001, "position": [1e9, 0, 1], "target": [0, 9, 1], "fov": 170},
+        {"time": 1e5, "position": [0, -1e9, 1], "target": [9, 9, 1], "fov": 60}],
+        "lights": [{"name": "spot", "keys": [{"time": 0, "strength": [0, 0, 0], "position": [0, 0, 2]},
+        {"time": 0.001, "strength": [1e12, 1, 0], "position": [1e9, 0, 2]},
+        {"time": 1e5, "strength": [0, 0, 0], "position": [0, 0, 2]}]}]})",
+                                  "steep.json");
+    ASSERT_TRUE(steep) << steep.error().line();
+    const gi::Scene base = lamps_and_sun();
+    gi::Scene scene = base;
+    double highest = 0;
+    for (double time = 0; time < 1e5; time += 1234.5) {
+        const auto camera = steep->at(time);
+        steep->lights.apply(base, time, scene);
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_LE(std::abs(camera.position[i]), 1e9);
+            EXPECT_LE(std::abs(spot(scene).position[i]), 1e9);
+            EXPECT_GE(spot(scene).strength[i], 0);
+            EXPECT_LE(spot(scene).strength[i], 1e12);
+        }
+        EXPECT_LE(camera.vertical_fov, 3);
+        EXPECT_GT(camera.vertical_fov, 0);
+        highest = std::max(highest, camera.position.x);
+    }
+    EXPECT_EQ(highest, 1e9) << "it would have been far beyond";
+    EXPECT_FALSE(parse_path(R"({"keys": [{"time": 0, "position": [0, 0, 1], "target": [0, 9, 1]},
+        {"time": 1e-320, "position": [0, 1, 1], "target": [0, 9, 1]}]})",
+                            "near.json"));
 }
 
 TEST(LightTracks, TheSunsDayRunsEvenlyAndSkyAndStrengthFollow) {
     const LightTracks tracks = tracks_of(R"("sun": [{"time": 0, "clock": "2026-03-20T06:00:00Z"},
         {"time": 10, "clock": "2026-03-20T18:00:00Z"}])");
-    gi::Scene scene = lamps_and_sun();
+    const gi::Scene base = lamps_and_sun();
+    gi::Scene scene = base;
     ASSERT_TRUE(tracks.check(scene));
     const auto seen = [&](double time) {
-        tracks.light(scene, time);
+        tracks.apply(base, time, scene);
         const gi::SceneLight& sun = scene.lights[2];
         return std::tuple(sun.sun->time.seconds, -glm::normalize(sun.target - sun.position), sun.strength,
                           scene.environment);
