@@ -26,13 +26,13 @@ class CacheTiles {
     /// `caches` must live as long as the tiles.
     CacheTiles(const CameraView& camera, std::span<const Cache> caches);
 
+    struct Counting;
     /// Interpolates the light about a surface point from the caches about it (Harada 2014, section 3.5): each
     /// counts by how near it is and how much its normal agrees (Ward et al. 1988, with the smooth weights of
     /// Tabellion & Lamorlette 2004), and not at all if it is in front of the point's plane. A slope is
     /// fitted to their light, because their mean is wrong where all of them lie on one side of the point.
     /// `pixel`: where it is seen if nothing hides it; the nearest place in the picture counts. Nothing if no
-    /// cache counts. `room`: for whoever asks often, to be given again.
-    struct Counting;
+    /// cache counts. `room`: scratch memory, so that whoever asks often can give it again.
     std::optional<LightByNormal> light_at(const SurfacePoint& at, const glm::vec2& pixel,
                                           std::vector<Counting>& room) const;
 
@@ -48,6 +48,7 @@ class CacheTiles {
         uint32_t left = 0, right = 0, upper = 0, lower = 0;  ///< tiles; the last ones are not included
     };
     Range range_of(const CameraView& camera, const Cache& cache) const;
+    static float weight_of(const Place& cache, const SurfacePoint& at);
     template <class Body>
     void for_each_tile(const Range& range, const Body& body) const;
 
@@ -55,7 +56,6 @@ class CacheTiles {
     uint32_t columns_, rows_;
     std::vector<size_t> starts_;  ///< of each tile's caches in places_, and the end
     std::vector<Place> places_;
-    static float weight_of(const Place& cache, const SurfacePoint& at);
 };
 
 /// A cache that counts for a point, and how much.

@@ -116,8 +116,8 @@ class EnvironmentEngine final : public Engine {
     std::array<MicroBuffers, 2> repairs_;  ///< of lonely pixels: of some of them, and of what is left
     Secondaries secondaries_;
     std::optional<SecondariesOf> secondaries_of_;
-    /// Irradiance by side, W/m^2, that secondary points of this and of earlier views have gathered: it does
-    /// not depend on the view.
+    /// Irradiance by side, W/m^2, that secondary points of this and of earlier views have gathered. Of the
+    /// view only their rays depend: those that are drawn together share a turn of them.
     std::unordered_map<uint32_t, glm::vec3> gathered_;
     std::optional<GatheredOf> gathered_of_;
     std::vector<Cache> caches_;

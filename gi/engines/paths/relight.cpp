@@ -227,6 +227,7 @@ void Relight::shine_by_lobes() {
     std::vector<MeanLobe> lobes;
     lobes.reserve(of_groups.size());
     for (const LampLobe& lobe : of_groups) lobes.emplace_back(lobe, kLargestLobe);
+    if (std::none_of(lobes.begin(), lobes.end(), [](const MeanLobe& lobe) { return lobe.shines(); })) return;
     lobe_light_.assign(paths.rays.size(), glm::vec3(0.0f));
     parallel_ranges(paths.points.size(), kPointsATask, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {

@@ -120,10 +120,25 @@ TEST_F(EnvironmentMotion, SecondaryPointsOfEarlierViewsDoNotGatherAgain) {
     EXPECT_GT(figure(*other, "after_down"), 20);
     EXPECT_LT(figure(*engine, "after_down"), .5 * figure(*other, "after_down"));
     EXPECT_LT(difference(right, moved), 1e-4);
+    // Under other light all of them gather.
+    const auto expect_new = [&](const glm::vec3& target, const char* what) {
+        const auto again = draw(*engine, target);
+        auto fresh = *make_engine("environment");
+        EXPECT_EQ(again, draw(*fresh, target)) << what;
+    };
     options_.settings.set(kSeed, 7);
-    const auto again = draw(*engine, aside_);
-    auto fresh = *make_engine("environment");
-    EXPECT_EQ(again, draw(*fresh, aside_)) << "other light: all of them gather";
+    expect_new(aside_, "seed");
+    options_.materials = {scenes::material(.4f)};
+    expect_new(ahead_, "material");
+    options_.lights = {scenes::spot(glm::vec3(.8f, 1, 1.8f), glm::vec3(.5f, .4f, 0), .6f, .6f, 9)};
+    expect_new(aside_, "lamp");
+    auto sky = std::make_shared<Environment>();
+    sky->width = sky->height = 1;
+    sky->texels = {glm::vec3(2)};
+    options_.environment = sky;
+    expect_new(ahead_, "sky");
+    options_.environment = nullptr;
+    expect_new(aside_, "no sky");
 }
 
 // Places, micro-buffers and reflectances stay while only lights change.
