@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -10,21 +9,17 @@
 
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/interpolation.h"
-#include "gi/engines/paths/lobe_albedo.h"
 #include "gi/engines/paths/point_sky.h"
+#include "gi/lighting/lobe_albedo.h"
+#include "gi/lighting/lobe_cells.h"
 #include "gi/shared/brdf.h"
 
 namespace lucarne::gi::paths {
 
 /// Light that arrives at gathering points, sorted by direction, for what glossy surfaces reflect of it. Yue
-/// et al. 2007 keep 128 directions; here these are the cells of an octahedral map of kSide x kSide. Lobes are
-/// evaluated with an exponent of at most kLargestExponent, about two cells wide: narrower ones (exponents
-/// over 28) look as wide.
+/// et al. 2007 keep 128 directions; here these are the cells of an octahedral map (LobeCells).
 class ArrivingLight {
  public:
-    static constexpr uint32_t kSide = 12, kCells = kSide * kSide;
-    static constexpr float kLargestExponent = kCells / 4;
-
     explicit ArrivingLight(std::shared_ptr<const PathsBake> bake);
     /// Takes the radiosity of all groups, W/m^2 (empty: they are dark), what lobes send along each ray
     /// besides (Relight::lobe_light(); may be empty), and the light of a sky (null: none), and notes which
@@ -42,7 +37,7 @@ class ArrivingLight {
     std::vector<uint8_t> cell_of_;  ///< of each ray of each point
     std::vector<uint8_t> rays_in_;  ///< of each cell of each point
     std::vector<glm::vec3> light_;  ///< of each cell of each point: sum of the radiosities that its rays meet
-    std::array<glm::vec3, kCells> directions_{};
+    LobeCells lobes_;
     LobeAlbedos albedos_;
 };
 

@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "gi/engines/paths/arriving_light.h"
 #include "gi/engines/paths/cosine_rays.h"
-#include "gi/engines/paths/lobe_albedo.h"
+#include "gi/lighting/lobe_albedo.h"
+#include "gi/lighting/lobe_cells.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
@@ -18,7 +18,7 @@ namespace lucarne::gi::paths {
 namespace {
 
 /// Of groups: narrower ones would fall between gathering points, which are too far apart for them.
-constexpr float kLargestLobe = ArrivingLight::kLargestExponent;
+constexpr float kLargestLobe = LobeCells::kLargestExponent;
 
 template <class Light>
 const Light kDark{};

@@ -21,33 +21,6 @@ namespace {
 
 using scenes::AnalyticScene, scenes::material;
 
-TEST(LobeAlbedo, IsTheIntegralOfTheLobe) {
-    for (const float exponent : {1.0f, 7.0f, 60.0f}) {
-        const paths::LobeAlbedo albedo(exponent);
-        const Reflectance surface = make_reflectance(material(0, 1, exponent), glm::vec3(0.0f));
-        for (const float angle : {0.0f, .7f, 1.4f}) {
-            const glm::vec3 to(std::sin(angle), 0, std::cos(angle));
-            double sum = 0;
-            constexpr int kRings = 400, kSectors = 800;
-            for (int ring = 0; ring < kRings; ++ring) {
-                const float height = (static_cast<float>(ring) + .5f) / kRings,
-                            radius = std::sqrt(1 - height * height);
-                for (int sector = 0; sector < kSectors; ++sector) {
-                    const float turn = 2 * kPi * (static_cast<float>(sector) + .5f) / kSectors;
-                    const glm::vec3 from(radius * std::cos(turn), radius * std::sin(turn), height);
-                    sum += specular_brdf(surface, glm::vec3(0, 0, 1), from, to) * height;
-                }
-            }
-            sum *= 2 * static_cast<double>(kPi) / (kRings * kSectors);
-            EXPECT_NEAR(albedo.at(to.z), sum, .005) << exponent << " " << angle;
-        }
-        double mean = 0;
-        for (int i = 0; i < 1000; ++i)
-            mean += 2 * (i + .5) / 1e6 * albedo.at((static_cast<float>(i) + .5f) / 1e3f);
-        EXPECT_NEAR(albedo.mean(), mean, 1e-5);
-    }
-}
-
 TEST(ArrivingLight, EvenLightIsReflectedByTheLobesAlbedo) {
     const auto bake = paths::bake_of(paths::input_of(scenes::closed_box(1, 40, glm::vec3(.5f)), 60, 64));
     const std::vector<glm::vec3> radiosity(bake->paths.groups.count(), glm::vec3(kPi, 2 * kPi, 0));
@@ -55,7 +28,7 @@ TEST(ArrivingLight, EvenLightIsReflectedByTheLobesAlbedo) {
     paths::ArrivingLight light(bake);
     light.set(radiosity, {}, nullptr, materials);
     const Reflectance surface = make_reflectance(materials[0], glm::vec3(.5f));
-    const paths::LobeAlbedo albedo(12);
+    const LobeAlbedo albedo(12);
     paths::PointFinder finder(*bake);
     for (const Surfel& s : scenes::closed_box(1, 9, glm::vec3(.5f))) {
         finder.find(s.position, s.normal);

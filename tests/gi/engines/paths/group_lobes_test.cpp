@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/engines/paths/lobe_albedo.h"
+#include "gi/lighting/lobe_albedo.h"
 #include "tests/gi/engines/test_lights.h"
 
 namespace lucarne::gi::paths {

@@ -7,7 +7,7 @@
 
 #include "gi/shared/brdf.h"
 
-namespace lucarne::gi::paths {
+namespace lucarne::gi {
 
 /// The share of even light that a lobe with ks = 1 reflects, for any direction of the light that leaves: the
 /// integral of specular_brdf() times the cosine.
@@ -39,4 +39,4 @@ class LobeAlbedos {
     std::map<float, LobeAlbedo> by_exponent_;
 };
 
-}  // namespace lucarne::gi::paths
+}  // namespace lucarne::gi

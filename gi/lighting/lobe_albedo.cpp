@@ -1,11 +1,11 @@
-#include "gi/engines/paths/lobe_albedo.h"
+#include "gi/lighting/lobe_albedo.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <glm/common.hpp>
 
-namespace lucarne::gi::paths {
+namespace lucarne::gi {
 
 LobeAlbedo::LobeAlbedo(float exponent) {
     // Directions about the mirror direction by the density (n + 1) / (2 pi) cos^n.
@@ -49,4 +49,4 @@ const LobeAlbedo* LobeAlbedos::find(float exponent) const {
     return found == by_exponent_.end() ? nullptr : &found->second;
 }
 
-}  // namespace lucarne::gi::paths
+}  // namespace lucarne::gi
