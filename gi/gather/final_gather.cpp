@@ -67,18 +67,11 @@ class LobeGather {
                            }));
             LUCARNE_TRY(gatherer_.set_openings(device_, openings, SkyOpenings::kRays));
         }
-        const uint32_t step = frame_.settings[kGatherEvery];
-        // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
-        const uint32_t place =
-            frame_.index == 0 ? (step / 2) * (step + 1) : static_cast<uint32_t>(mix64(seed_) % (step * step));
-        const GatherGrid grid{frame_.camera.width, frame_.camera.height, step, place % step, place / step};
-        std::vector<uint32_t> pixels;
-        for (uint32_t row = 0; row < grid.rows(); ++row)
-            for (uint32_t column = 0; column < grid.columns(); ++column)
-                pixels.push_back(grid.pixel(column, row));
+        const GatherGrid grid = gather_grid(frame_);
+        const std::vector<uint32_t> pixels = grid.pixels();
         std::vector<glm::vec4> gathered;
         LUCARNE_TRY(timed(frame_, "gather", [&] { return gather_at(pixels, gathered, false); }));
-        if (step == 1) {
+        if (grid.step == 1) {
             light = std::move(gathered);
             return {};
         }
@@ -182,6 +175,15 @@ class LobeGather {
 
 }  // namespace
 
+GatherGrid gather_grid(const Frame& frame) {
+    const uint32_t step = frame.settings[kGatherEvery];
+    const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
+    // The pixels that gather move from frame to frame, so that averages of frames blur nothing.
+    const uint32_t place =
+        frame.index == 0 ? (step / 2) * (step + 1) : static_cast<uint32_t>(mix64(seed) % (step * step));
+    return {frame.camera.width, frame.camera.height, step, place % step, place / step};
+}
+
 Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gatherer& gatherer,
                                              Gathered what, const RareLight& rare, const BufferStyle& style,
                                              GatherCounts& counts) {
@@ -190,13 +192,14 @@ Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gat
     LobeGather gather(frame, device, gatherer, what, style, counts);
     LUCARNE_TRY(gather.run(Lobe::diffuse, surfaces, {}, rare, light));
     if (frame.stopped()) return light;
-    LUCARNE_TRY(reflect(frame, device, gatherer, what, std::move(surfaces), light, counts, style));
+    const std::vector<Reflectance> reflectances = reflect_evenly(frame, surfaces, light);
+    LUCARNE_TRY(reflect_by_lobes(frame, device, gatherer, what, std::move(surfaces), reflectances, light,
+                                 counts, style));
     return light;
 }
 
-Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
-                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light, GatherCounts& counts,
-                     const BufferStyle& style) {
+std::vector<Reflectance> reflect_evenly(const Frame& frame, std::span<const SurfacePoint> surfaces,
+                                        std::span<glm::vec4> light) {
     const std::vector<Material> materials = device_materials(frame.materials);
     std::vector<Reflectance> reflectances(surfaces.size());
     parallel_ranges(surfaces.size(), kPixelsATask, [&](size_t first, size_t last) {
@@ -206,9 +209,16 @@ Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathere
             light[i] = glm::vec4(reflectances[i].kd * glm::vec3(light[i]), 0);
         }
     });
+    return reflectances;
+}
+
+Result<void> reflect_by_lobes(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
+                              std::vector<SurfacePoint> surfaces, std::span<const Reflectance> reflectances,
+                              std::span<glm::vec4> light, GatherCounts& counts, const BufferStyle& style) {
     if (!glossy(frame)) return {};
     for (size_t i = 0; i < surfaces.size(); ++i)
         if (!(reflectances[i].ks > 0)) surfaces[i].radius = 0;
+    if (std::ranges::none_of(surfaces, [](const SurfacePoint& at) { return at.radius > 0; })) return {};
     std::vector<glm::vec4> lobe;
     LobeGather gather(frame, device, gatherer, what, style, counts);
     LUCARNE_TRY(gather.run(Lobe::specular, surfaces, reflectances, {}, lobe));

@@ -9,7 +9,9 @@
 #include "gi/gather/bright_light.h"
 #include "gi/gather/gatherer.h"
 #include "gi/gather/sky_openings.h"
+#include "gi/gather/upsample.h"
 #include "gi/host_frame.h"
+#include "gi/shared/brdf.h"
 
 namespace lucarne::gi {
 
@@ -44,10 +46,19 @@ Result<std::vector<glm::vec4>> gather_pixels(Frame& frame, ClDevice& device, Gat
                                              Gathered what, const RareLight& rare, const BufferStyle& style,
                                              GatherCounts& counts);
 
-/// Turns the mean radiance that each pixel receives (`light`) into what it reflects, W/(sr m^2). Specular
-/// lobes gather by micro-buffers of their own, as above. Errors likewise.
-Result<void> reflect(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
-                     std::vector<SurfacePoint> surfaces, std::vector<glm::vec4>& light, GatherCounts& counts,
-                     const BufferStyle& style = {});
+/// Turns the mean radiance that each pixel receives (`light`) into what it reflects evenly, W/(sr m^2).
+/// Returns the pixels' reflectances.
+std::vector<Reflectance> reflect_evenly(const Frame& frame, std::span<const SurfacePoint> surfaces,
+                                        std::span<glm::vec4> light);
+
+/// Adds what pixels reflect by specular lobes, which gather by micro-buffers of their own, as above. A
+/// surface without a radius has no lobe. Errors likewise.
+Result<void> reflect_by_lobes(Frame& frame, ClDevice& device, Gatherer& gatherer, Gathered what,
+                              std::vector<SurfacePoint> surfaces, std::span<const Reflectance> reflectances,
+                              std::span<glm::vec4> light, GatherCounts& counts,
+                              const BufferStyle& style = {});
+
+/// Returns which pixels of a frame gather light for those between them (kGatherEvery).
+GatherGrid gather_grid(const Frame& frame);
 
 }  // namespace lucarne::gi

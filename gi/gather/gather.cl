@@ -7,6 +7,7 @@
 // LUCARNE_GRID pixels a side about it.
 #include "gi/gather/gather_point.h"
 #include "gi/gather/micro_buffer.cl"
+#include "gi/shared/direction_cells.h"
 #include "gi/shared/lobe.h"
 #include "gi/gather/sky_picture.h"
 
@@ -308,11 +309,54 @@ kernel void see(global const WideNode* nodes, global const GatherPoint* points, 
     }
 }
 
+// What lights buffers that are kept. Arguments as of gather(); `densities`: of the point alone.
+typedef struct {
+    global const WideNode* nodes;
+    global const float *surfels, *lobes, *lobe_directions, *bright;
+    uint lit, glossy;
+    float reach2;
+    global const float* sky_texels;
+    SkyPicture sky;
+    global const float4* openings;
+    uint open;
+    global const float* densities;
+} Light;
+
+// Returns the radiance that arrives along a ray of a kept buffer, without that of specular lobes. `code`: what the ray sees
+// (see()).
+float3 arriving(const Light* light, const Place* place, uint code, float3 direction) {
+    float3 radiance = (float3)(0.0f);
+    if (code != kSeesSky) {
+        if (light->lit) radiance = vload3(code, light->surfels);
+        if (light->lit && light->reach2 >= 0.0f)
+            radiance = without_bright(radiance, light->bright, light->reach2, code,
+                                      length(slot_middle(light->nodes, code / 2) - place->position));
+    } else if (light->sky.width > 0) {
+        radiance = sky_radiance(light->sky_texels, light->sky, direction);
+        if (light->open > 0)
+            radiance *= share_of_buffer(light->openings, light->open, light->densities, place->position, direction,
+                                        dot(direction, place->normal));
+    }
+    return radiance;
+}
+
+// Returns that of specular lobes. `height`: of the direction over the surface.
+float3 arriving_by_lobes(const Light* light, const Place* place, uint code, float3 direction, float height) {
+    if (!light->glossy || code == kSeesSky) return (float3)(0.0f);
+    return specular(light->lobes, light->lobe_directions, code, -direction, spread_of(*place, height));
+}
+
+// Returns the place of a point whose buffer is kept: the start of its rays does not matter any more.
+Place kept_place(global const WideNode* nodes, GatherPoint point, global const float* rays, uint sets) {
+    point.viewer.x = point.viewer.y = point.viewer.z = 0.0f;
+    return place_of(nodes, point, rays, sets);
+}
+
 // For each point: the light that it receives by what its buffer sees, as the ten terms of a LightByNormal (three floats
 // each). At the point's own normal it is the mean over the rays, as gather() has it. What changes with the normal is that
 // of the spherical harmonics up to the second order (Ramamoorthi & Hanrahan 2001, "An efficient representation for
 // irradiance environment maps"): they turn max(c, 0), c the cosine between normal and ray, into 3/32 + c/2 + 15/32 c^2.
-// Arguments as above; `first`: the number of the first point, of its results and of what it sees.
+// Arguments as above; `first`: the number of the first of `count` points.
 kernel void shade(global const WideNode* nodes, global const float* light, uint lit, global const float* lobe_light,
                   global const float* lobe_directions, uint glossy, global const float* bright, float reach2,
                   global const float* sky_texels, SkyPicture sky, global const float4* openings, uint open,
@@ -320,32 +364,19 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
                   uint sets, uint first, uint count, global const uint* seen, global float* results) {
     uint number = get_global_id(0);
     if (number >= count) return;
-    densities += number * open;
-    number += first;
-    GatherPoint point = points[number];
-    point.viewer.x = point.viewer.y = point.viewer.z = 0.0f;  // the start of the rays does not matter any more
-    Place place = place_of(nodes, point, rays, sets);
+    Light source = {nodes,  light,      lobe_light, lobe_directions, bright, lit, glossy,
+                    reach2, sky_texels, sky,        openings,        open,   densities + number * open};
+    Place place = kept_place(nodes, points[first + number], rays, sets);
     float3 sum = (float3)(0.0f), terms[9];
     for (int k = 0; k < 9; ++k) terms[k] = (float3)(0.0f);
     uint cast = 0;
     for (int pixel = 0; pixel < PIXELS; ++pixel) {
-        uint code = seen[number * (uint)(PIXELS) + (uint)(pixel)];
+        uint code = seen[(first + number) * (uint)(PIXELS) + (uint)(pixel)];
         if (code == kSeesNothing) continue;
         ++cast;
         float3 ray = ray_of(place, pixel);
         float3 d = place.side * ray.x + place.across * ray.y + place.axis * ray.z;
-        float3 radiance = (float3)(0.0f);
-        if (code != kSeesSky) {
-            if (lit) radiance = vload3(code, light);
-            if (lit && reach2 >= 0.0f)
-                radiance = without_bright(radiance, bright, reach2, code,
-                                          length(slot_middle(nodes, code / 2) - place.position));
-            if (glossy) radiance += specular(lobe_light, lobe_directions, code, -d, spread_of(place, ray.z));
-        } else if (sky.width > 0) {
-            radiance = sky_radiance(sky_texels, sky, d);
-            if (open > 0)
-                radiance *= share_of_buffer(openings, open, densities, place.position, d, dot(d, place.normal));
-        }
+        float3 radiance = arriving(&source, &place, code, d) + arriving_by_lobes(&source, &place, code, d, ray.z);
         sum += radiance;
         // Rays are drawn by the cosine, so each stands for as much solid angle as 1 over its cosine; within the
         // last six degrees above the horizon that would be beyond bounds, and stays as it is there.
@@ -369,4 +400,38 @@ kernel void shade(global const WideNode* nodes, global const float* light, uint 
         vstore3(terms[k] * share, 10 * number + k + 1, results);
     }
     vstore3(sum * share, 10 * number, results);
+}
+
+// For each point: the light that it receives by what its buffer sees, by direction. For each cell of directions
+// (direction_cells.h) five floats: the sum of the radiances that its rays bring, how many rays there are, and the sum of
+// 1 over the distances of the slots that they meet, 1/m. Light of lobes counts there as if it came from far away: what one
+// sees of it is the image of a lamp behind the surface, which stays where it is while one moves. Arguments as of shade().
+kernel void sort_by_direction(global const WideNode* nodes, global const float* light, uint lit,
+                              global const float* lobe_light, global const float* lobe_directions, uint glossy,
+                              global const float* bright, float reach2, global const float* sky_texels, SkyPicture sky,
+                              global const float4* openings, uint open, global const float* densities,
+                              global const GatherPoint* points, global const float* rays, uint sets, uint first,
+                              uint count, global const uint* seen, global float* results) {
+    uint number = get_global_id(0);
+    if (number >= count) return;
+    Light source = {nodes,  light,      lobe_light, lobe_directions, bright, lit, glossy,
+                    reach2, sky_texels, sky,        openings,        open,   densities + number * open};
+    Place place = kept_place(nodes, points[first + number], rays, sets);
+    float nearest = fmax(points[first + number].lift, 1e-6f);
+    global float* cells = results + number * (5 * kDirectionCells);
+    for (uint i = 0; i < 5 * kDirectionCells; ++i) cells[i] = 0.0f;
+    for (int pixel = 0; pixel < PIXELS; ++pixel) {
+        uint code = seen[(first + number) * (uint)(PIXELS) + (uint)(pixel)];
+        if (code == kSeesNothing) continue;
+        float3 ray = ray_of(place, pixel);
+        float3 d = place.side * ray.x + place.across * ray.y + place.axis * ray.z;
+        global float* cell = cells + 5 * direction_cell(d);
+        float3 even = arriving(&source, &place, code, d), lobes = arriving_by_lobes(&source, &place, code, d, ray.z);
+        vstore3(vload3(0, cell) + even + lobes, 0, cell);
+        cell[3] += 1.0f;
+        if (code == kSeesSky) continue;
+        float share = even.x + even.y + even.z, both = share + lobes.x + lobes.y + lobes.z;
+        float distance = fmax(length(slot_middle(nodes, code / 2) - place.position), nearest);
+        cell[4] += (both > 0.0f ? share / both : 1.0f) / distance;
+    }
 }

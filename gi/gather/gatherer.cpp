@@ -313,42 +313,52 @@ Result<void> Gatherer::see(ClDevice& device, std::span<const GatherPoint> points
     return {};
 }
 
-Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered what,
+template <class Light>
+Result<std::vector<Light>> Gatherer::light_buffers(ClDevice& device, const char* kernel_name, Gathered what,
                                                    const MicroBuffers& buffers,
                                                    const std::atomic<bool>* stop) {
-    std::vector<LightByNormal> result(buffers.count());
+    std::vector<Light> result(buffers.count());
     if (result.empty()) return result;
     const auto [lit, glossy, sky, open] = asked(what);
     LUCARNE_TRY(make_rays(device, buffers.grid_, buffers.seed_));
     const Launch& launch = launch_of(device);
     LUCARNE_ASSIGN(const ClKernel* kernel,
-                   device.kernel(kSource, "shade", defines_for(buffers.grid_, kOneLane)));
-    LUCARNE_TRY(device.reserve(results_, result.size() * sizeof(LightByNormal), "gathered light"));
+                   device.kernel(kSource, kernel_name, defines_for(buffers.grid_, kOneLane)));
     const std::vector<GatherPoint> points = in_order(buffers.held_, buffers.order_);
-    std::vector<LightByNormal> drawn(result.size());
-    std::vector<LightByNormal> by_rays(open > 0 ? points.size() : 0);
+    std::vector<Light> drawn(std::min(launch.points, result.size()));
+    LUCARNE_TRY(device.reserve(results_, drawn.size() * sizeof(Light), "gathered light"));
     for (size_t first = 0; first < result.size(); first += launch.points) {
-        if (stop && *stop) return std::vector<LightByNormal>(result.size());
+        if (stop && *stop) return std::vector<Light>(result.size());
         const size_t count = std::min(launch.points, result.size() - first);
-        if (open > 0)
-            LUCARNE_TRY(send_densities(device, std::span(points).subspan(first, count), buffers.grid_));
+        const auto some = std::span(points).subspan(first, count);
+        if (open > 0) LUCARNE_TRY(send_densities(device, some, buffers.grid_));
         LUCARNE_TRY(kernel->run(
             ClRange(count, launch.group), nodes_, lit ? light_ : nodes_, lit, glossy ? lobe_light_ : nodes_,
             glossy ? lobe_directions_ : nodes_, glossy, reach2_ >= 0 ? bright_ : nodes_, reach2_,
             sky.width > 0 ? sky_texels_ : nodes_, sky, open > 0 ? spheres_ : nodes_, open,
             open > 0 ? densities_of_ : nodes_, buffers.points_, rays_, kSets, static_cast<uint32_t>(first),
             static_cast<uint32_t>(count), buffers.seen_, results_));
-        if (open == 0) continue;
-        each_sky_ray(std::span(points).subspan(first, count),
-                     [&](size_t i, const glm::vec3& direction, const glm::vec3& light) {
-                         by_rays[first + i].add(light_from(direction, points[first + i].normal, light), 1);
-                     });
-        LUCARNE_TRY(device.finish());
+        drawn.resize(count);
+        LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(drawn))));
+        if (open > 0)
+            each_sky_ray(some, [&](size_t i, const glm::vec3& direction, const glm::vec3& light) {
+                drawn[i].add_ray(some[i].normal, direction, light);
+            });
+        for (size_t i = 0; i < count; ++i) result[buffers.order_[first + i]] = drawn[i];
     }
-    LUCARNE_TRY(results_.download(0, std::as_writable_bytes(std::span(drawn))));
-    for (size_t i = 0; i < by_rays.size(); ++i) drawn[i].add(by_rays[i], 1);
-    for (size_t i = 0; i < drawn.size(); ++i) result[buffers.order_[i]] = drawn[i];
     return result;
+}
+
+Result<std::vector<LightByNormal>> Gatherer::shade(ClDevice& device, Gathered what,
+                                                   const MicroBuffers& buffers,
+                                                   const std::atomic<bool>* stop) {
+    return light_buffers<LightByNormal>(device, "shade", what, buffers, stop);
+}
+
+Result<std::vector<LightByDirection>> Gatherer::shade_by_direction(ClDevice& device, Gathered what,
+                                                                   const MicroBuffers& buffers,
+                                                                   const std::atomic<bool>* stop) {
+    return light_buffers<LightByDirection>(device, "sort_by_direction", what, buffers, stop);
 }
 
 }  // namespace lucarne::gi

@@ -16,6 +16,7 @@
 #include "gi/gather/gather_options.h"
 #include "gi/gather/gather_point.h"
 #include "gi/gather/gather_sky.h"
+#include "gi/gather/light_by_direction.h"
 #include "gi/gather/light_by_normal.h"
 #include "gi/gather/sky_openings.h"
 #include "gi/gather/sky_picture.h"
@@ -95,8 +96,16 @@ class Gatherer {
     /// the rest is left dark. Errors: the device failed.
     Result<std::vector<LightByNormal>> shade(ClDevice& device, Gathered what, const MicroBuffers& buffers,
                                              const std::atomic<bool>* stop = nullptr);
+    /// Does the same by direction.
+    Result<std::vector<LightByDirection>> shade_by_direction(ClDevice& device, Gathered what,
+                                                             const MicroBuffers& buffers,
+                                                             const std::atomic<bool>* stop = nullptr);
 
  private:
+    /// Lights buffers by a kernel that makes a `Light` of each.
+    template <class Light>
+    Result<std::vector<Light>> light_buffers(ClDevice& device, const char* kernel, Gathered what,
+                                             const MicroBuffers& buffers, const std::atomic<bool>* stop);
     struct Asked {
         uint32_t lit, glossy;
         SkyPicture sky;

@@ -24,6 +24,8 @@ struct LightByNormal {
         for (size_t k = 0; k < terms.size(); ++k) sum += powers[k] * terms[k];
         return glm::max(sum, 0.0f);
     }
+    /// Adds light from one direction that a surface with the normal `normal` receives, W/(sr m^2).
+    void add_ray(const glm::vec3& normal, const glm::vec3& direction, const glm::vec3& light);
     void add(const LightByNormal& other, float weight) {
         for (size_t k = 0; k < terms.size(); ++k) terms[k] += weight * other.terms[k];
     }
@@ -47,6 +49,11 @@ inline LightByNormal light_from(const glm::vec3& direction, const glm::vec3& nor
     result.terms[0] = light;
     for (size_t k = 1; k < powers.size(); ++k) result.terms[0] -= powers[k] * result.terms[k];
     return result;
+}
+
+inline void LightByNormal::add_ray(const glm::vec3& normal, const glm::vec3& direction,
+                                   const glm::vec3& light) {
+    add(light_from(direction, normal, light), 1);
 }
 
 }  // namespace lucarne::gi

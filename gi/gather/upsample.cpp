@@ -27,6 +27,13 @@ uint32_t GatherGrid::pixel(uint32_t column, uint32_t row) const {
     return std::min(row * step + y, height - 1) * width + std::min(column * step + x, width - 1);
 }
 
+std::vector<uint32_t> GatherGrid::pixels() const {
+    std::vector<uint32_t> all;
+    for (uint32_t row = 0; row < rows(); ++row)
+        for (uint32_t column = 0; column < columns(); ++column) all.push_back(pixel(column, row));
+    return all;
+}
+
 std::vector<uint32_t> upsample(const CameraView& camera, std::span<const SurfacePoint> surfaces,
                                const GatherGrid& grid, std::span<const glm::vec4> gathered,
                                std::span<glm::vec4> light) {

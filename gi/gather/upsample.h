@@ -20,6 +20,8 @@ struct GatherGrid {
     uint32_t rows() const { return (height + step - 1) / step; }
     /// Returns the pixel of a place of the grid, inside the picture.
     uint32_t pixel(uint32_t column, uint32_t row) const;
+    /// Returns those of all places, by row and column.
+    std::vector<uint32_t> pixels() const;
 };
 
 /// Of the weights with which places count for a pixel: the least sum with which they do, and what is added to

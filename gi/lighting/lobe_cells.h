@@ -22,22 +22,33 @@ class LobeCells {
     LobeCells() {
         for (uint32_t cell = 0; cell < kDirectionCells; ++cell) directions_[cell] = direction_of_cell(cell);
     }
-    /// Calls visit(cell, weight) for the cells in front of a surface whose light its lobe reflects in the
-    /// direction `to`, with the lobe's share of its peak.
-    template <class Visit>
-    void each(float exponent, const glm::vec3& normal, const glm::vec3& to, const Visit& visit) const {
-        const glm::vec3 mirror = 2 * glm::dot(normal, to) * normal - to;
-        const float narrowed = narrowed_by_cells(exponent);
-        for (uint32_t cell = 0; cell < kDirectionCells; ++cell) {
-            const float along = glm::dot(mirror, directions_[cell]);
-            if (along <= 0 || glm::dot(normal, directions_[cell]) <= 0) continue;
-            const float lobe = std::pow(along, narrowed);
-            if (lobe >= kLeastLobe) visit(cell, lobe);
+    const glm::vec3& direction(uint32_t cell) const { return directions_[cell]; }
+
+    /// A lobe that reflects light in the direction `to`.
+    class Lobe {
+     public:
+        Lobe(float exponent, const glm::vec3& normal, const glm::vec3& to)
+            : exponent_(narrowed_by_cells(exponent)),
+              normal_(normal),
+              mirror_(2 * glm::dot(normal, to) * normal - to),
+              least_(std::pow(kLeastLobe, 1 / exponent_)) {}
+        /// Returns how much light from a direction counts, as a share of the lobe's peak; 0 from behind the
+        /// surface. `from`: of any length.
+        float at(const glm::vec3& from) const {
+            const float along = glm::dot(mirror_, from);
+            if (along <= 0 || glm::dot(normal_, from) <= 0) return 0;
+            const float cosine2 = along * along / glm::dot(from, from);
+            return cosine2 > least_ * least_ ? std::pow(cosine2, exponent_ / 2) : 0;
         }
-    }
+
+     private:
+        float exponent_;
+        glm::vec3 normal_, mirror_;
+        float least_;  ///< cosine to the mirror direction
+    };
 
  private:
-    /// Cells in which a lobe has less than this of its peak are left out.
+    /// Where a lobe has less than this of its peak it counts nothing.
     static constexpr float kLeastLobe = 1e-3f;
 
     /// Returns the exponent of a lobe that has the width of cos^n once the cells have widened it. Along each

@@ -24,8 +24,6 @@ constexpr float kInFront = 0.06f;
 /// What a slope costs in LinearFit, in values of full weight at the end of their reach. With less, walls have
 /// blotches along their edges.
 constexpr float kFlatness = 0.1f;
-/// Pixels with less weight than this in all are lonely.
-constexpr float kLeastSum = 0.02f;
 
 /// Local linear regression over a plane (Fan 1992, "Design-adaptive nonparametric regression"): fits a value
 /// at the origin and a slope to weighted values about it. A weighted mean is too low where all values lie on
@@ -122,21 +120,28 @@ CacheTiles::Range CacheTiles::range_of(const CameraView& camera, const Cache& ca
             tile(place.y - radius, rows_), std::min(tile(place.y + radius, rows_) + 1, rows_)};
 }
 
-std::optional<LightByNormal> CacheTiles::light_at(const SurfacePoint& at, const glm::vec2& pixel,
-                                                  std::vector<Counting>& room) const {
+float CacheTiles::find(const SurfacePoint& at, const glm::vec2& pixel, std::vector<Counting>& found) const {
     const auto tile = [](float place, uint32_t count) {
         return static_cast<size_t>(std::clamp(place / kTileSide, 0.0f, static_cast<float>(count - 1)));
     };
     const size_t number = tile(pixel.y, rows_) * columns_ + tile(pixel.x, columns_);
-    LinearFit fit(at.normal);
-    room.clear();
+    float sum = 0;
+    found.clear();
     for (const Place& place :
          std::span(places_).subspan(starts_[number], starts_[number + 1] - starts_[number]))
         if (const float weight = weight_of(place, at); weight > 0) {
-            room.push_back({place.cache, weight, place.position - at.position});
-            fit.add(room.back().offset, place.reach, weight);
+            found.push_back({place.cache, weight, place.position - at.position});
+            sum += weight;
         }
-    if (!(fit.weights() > kLeastSum)) return std::nullopt;
+    return sum;
+}
+
+std::optional<LightByNormal> CacheTiles::light_at(const SurfacePoint& at, const glm::vec2& pixel,
+                                                  std::vector<Counting>& room) const {
+    if (!(find(at, pixel, room) > kLeastWeight)) return std::nullopt;
+    LinearFit fit(at.normal);
+    for (const Counting& counting : room)
+        fit.add(counting.offset, caches_[counting.cache].reach, counting.weight);
     fit.solve();
     LightByNormal sum{};
     for (const Counting& counting : room)
@@ -148,18 +153,17 @@ void smooth(const CameraView& camera, std::span<Cache> caches, std::span<const f
     std::vector<Cache> wide(caches.begin(), caches.end());
     for (size_t i = 0; i < wide.size(); ++i) wide[i].reach = reaches[i];
     const CacheTiles tiles(camera, wide);
-    std::vector<LightByNormal> light(caches.size());
     parallel_ranges(caches.size(), kCachesAPiece, [&](size_t first, size_t last) {
         std::vector<CacheTiles::Counting> room;
         for (size_t i = first; i < last; ++i) {
-            const Cache& cache = caches[i];
+            Cache& cache = caches[i];
             float depth = 0;
             const glm::vec2 pixel = view_place(camera, cache.position, depth);
-            light[i] = tiles.light_at({.position = cache.position, .normal = cache.normal}, pixel, room)
-                           .value_or(cache.light);
+            const auto shared =
+                tiles.light_at({.position = cache.position, .normal = cache.normal}, pixel, room);
+            if (shared) cache.light = *shared;
         }
     });
-    for (size_t i = 0; i < caches.size(); ++i) caches[i].light = light[i];
 }
 
 std::vector<uint32_t> interpolate(const CameraView& camera, std::span<const SurfacePoint> surfaces,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,9 @@ struct Cache {
     glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
     float reach = 0;  ///< m; pixels farther away do not use it
     LightByNormal light{};
+    /// The same by direction, if a surface is glossy; else none. It is not shared with others about
+    /// (smooth()).
+    std::shared_ptr<const LightByDirection> by_direction{};
 };
 
 /// Caches by the tiles of the picture in which they may count.
@@ -35,6 +39,10 @@ class CacheTiles {
     /// cache counts. `room`: scratch memory, so that whoever asks often can give it again.
     std::optional<LightByNormal> light_at(const SurfacePoint& at, const glm::vec2& pixel,
                                           std::vector<Counting>& room) const;
+    /// Finds the caches that count there. Returns the sum of their weights; if it is not over kLeastWeight,
+    /// light_at() finds nothing.
+    float find(const SurfacePoint& at, const glm::vec2& pixel, std::vector<Counting>& found) const;
+    static constexpr float kLeastWeight = 0.02f;
 
  private:
     /// What decides whether a cache counts, in the order in which it is asked for.

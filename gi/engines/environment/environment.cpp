@@ -13,6 +13,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/engines/environment/caches.h"
+#include "gi/engines/environment/glossy_caches.h"
 #include "gi/engines/environment/kept_caches.h"
 #include "gi/engines/environment/options.h"
 #include "gi/engines/environment/primaries.h"
@@ -32,10 +33,10 @@ namespace lucarne::gi {
 namespace environment {
 namespace {
 
-constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,        &kOnlyBounce.info,  &kMicroBuffer.info, &kCacheSpacing.info,
-    &kRadiosityLevel.info, &kGatherEvery.info, &kShadows.info,     &kLightResolution.info,
-    &kLightSamples.info,   &kBruteForce.info,  &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info,      &kMicroBuffer.info,
+                                          &kCacheSpacing.info, &kRadiosityLevel.info,  &kGatherEvery.info,
+                                          &kShadows.info,      &kLightResolution.info, &kLightSamples.info,
+                                          &kGlossyCaches.info, &kBruteForce.info,      &kSeed.info};
 constexpr EngineInfo kInfo{
     .name = "environment",
     .label = "Environment lighting",
@@ -81,8 +82,13 @@ class EnvironmentEngine final : public Engine {
     Result<void> light_secondaries(Frame& frame, std::span<const SidePlace> primaries);
     Result<std::vector<glm::vec3>> irradiance_at(Frame& frame, std::span<const uint32_t> sides,
                                                  Gathered what);
-    Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what);
+    Result<void> add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what, bool glossy);
     Result<std::vector<LightByNormal>> shade(const Frame& frame, Gathered what, const MicroBuffers& buffers);
+    Result<std::vector<LightByDirection>> shade_by_direction(const Frame& frame, Gathered what,
+                                                             const MicroBuffers& buffers);
+    template <class Light>
+    void add_bright(const Frame& frame, Gathered what, std::span<const GatherPoint> points,
+                    std::span<Light> light) const;
     Result<void> find_openings(Frame& frame, std::span<const SurfacePoint> surfaces);
     Result<void> find_bright(Frame& frame, std::span<const SurfacePoint> surfaces);
     Result<std::vector<Cache>> gather_at(Frame& frame, std::span<const SurfacePoint> surfaces,
@@ -91,7 +97,8 @@ class EnvironmentEngine final : public Engine {
     Result<void> repair(Frame& frame, std::span<const SurfacePoint> surfaces, std::vector<uint32_t> lonely,
                         Gathered what, std::vector<glm::vec4>& light);
     Result<void> follow(Frame& frame);
-    Result<void> reflect_and_upload(Frame& frame, Gathered what, std::span<const SurfacePoint> surfaces,
+    Result<void> reflect_and_upload(Frame& frame, Gathered what, std::vector<SurfacePoint> surfaces,
+                                    std::span<const Cache> caches, CachedLobes lobes,
                                     std::vector<glm::vec4>& light);
 
     void report(Frame& frame, double share);
@@ -213,7 +220,7 @@ Result<void> EnvironmentEngine::light_secondaries(Frame& frame, std::span<const 
         known_ = secondaries_.sides().size();
     }
     caches_.clear();
-    if (!s[kBruteForce]) LUCARNE_TRY(add_caches(frame, primaries, arriving));
+    if (!s[kBruteForce]) LUCARNE_TRY(add_caches(frame, primaries, arriving, false));
     LUCARNE_ASSIGN(const auto known, irradiance_at(frame, secondaries_.sides(), arriving));
     if (frame.stopped()) return {};
     const TimedPass pass(frame, "propagation");
@@ -314,21 +321,37 @@ Result<std::vector<LightByNormal>> EnvironmentEngine::shade(const Frame& frame, 
     LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, SkyOpenings::kRays));
     LUCARNE_ASSIGN(auto light, gatherer.shade(lighting_.opencl(), what, buffers, frame.stop));
     gatherer.set_no_openings();
-    if (!bright_ || what == Gathered::sky) return light;
-    const std::span<const GatherPoint> points = buffers.points();
+    add_bright(frame, what, buffers.points(), std::span(light));
+    return light;
+}
+
+Result<std::vector<LightByDirection>> EnvironmentEngine::shade_by_direction(const Frame& frame, Gathered what,
+                                                                            const MicroBuffers& buffers) {
+    Gatherer& gatherer = lighting_.gatherer();
+    LUCARNE_TRY(gatherer.set_openings(lighting_.opencl(), openings_, SkyOpenings::kRays));
+    LUCARNE_ASSIGN(auto light, gatherer.shade_by_direction(lighting_.opencl(), what, buffers, frame.stop));
+    gatherer.set_no_openings();
+    add_bright(frame, what, buffers.points(), std::span(light));
+    return light;
+}
+
+/// Adds what VPLs bring to points.
+template <class Light>
+void EnvironmentEngine::add_bright(const Frame& frame, Gathered what, std::span<const GatherPoint> points,
+                                   std::span<Light> light) const {
+    if (!bright_ || what == Gathered::sky) return;
     parallel_ranges(points.size(), kPointsATask, [&](size_t first, size_t last) {
         for (size_t i = first; i < last && !frame.stopped(); ++i)
             bright_->each(points[i], points[i].seed,
                           [&](const glm::vec3& direction, const glm::vec3& arriving) {
-                              light[i].add(light_from(direction, points[i].normal, arriving), 1);
+                              light[i].add_ray(points[i].normal, direction, arriving);
                           });
     });
-    return light;
 }
 
-/// Lights the micro-buffers of the primary points.
-Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePlace> primaries,
-                                           Gathered what) {
+/// Lights the micro-buffers of the primary points. `glossy`: also by direction, if they are not too many.
+Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePlace> primaries, Gathered what,
+                                           bool glossy) {
     const TimedPass pass(frame, "caches");
     // The sky is the same for secondary points and for pixels.
     if (what != Gathered::light_of_surfels && sky_.empty()) {
@@ -340,6 +363,10 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
     }
     if (what != Gathered::light_of_surfels)
         for (size_t i = 0; i < light.size(); ++i) light[i].add(sky_[i], 1);
+    std::vector<LightByDirection> by_direction;
+    if (glossy && light.size() <= kMostGlossyCaches) {
+        LUCARNE_ASSIGN(by_direction, shade_by_direction(frame, what, buffers_));
+    }
     LUCARNE_ASSIGN(const auto nearness, buffers_.nearness());
     caches_.clear();
     std::vector<float> reaches;
@@ -348,7 +375,9 @@ Result<void> EnvironmentEngine::add_caches(Frame& frame, std::span<const SidePla
         const float distance = 1 / std::max(nearness[i], 1e-9f);  // harmonic mean
         const float reach =
             std::clamp(kShareOfDistance * distance, kLeastReach * place.size, kReach * place.size);
-        caches_.push_back({place.position, place.normal, reach, light[i]});
+        caches_.push_back(
+            {place.position, place.normal, reach, light[i],
+             by_direction.empty() ? nullptr : std::make_shared<LightByDirection>(by_direction[i])});
         reaches.push_back(std::clamp(kShareToSmooth * distance, reach, kReachToSmooth * place.size));
     }
     smooth(frame.camera, caches_, reaches);
@@ -376,13 +405,19 @@ Result<std::vector<Cache>> EnvironmentEngine::gather_at(Frame& frame, std::span<
                                              buffers, frame.stop));
         if (frame.stopped()) break;
         LUCARNE_ASSIGN(const auto gathered, shade(frame, what, buffers));
+        std::vector<LightByDirection> by_direction;
+        if (glossy(frame) && caches_.size() + caches.size() + some.size() <= kMostGlossyCaches) {
+            LUCARNE_ASSIGN(by_direction, shade_by_direction(frame, what, buffers));
+        }
         for (size_t i = 0; i < gathered.size(); ++i) {
             const SurfacePoint& at = surfaces[some[i]];
             light[some[i]] = glm::vec4(gathered[i].on(at.normal), 0);
             float depth = 0;
             view_place(camera, at.position, depth);
             const float reach = 1.5f * spacing * pixel_height(camera, depth) + at.radius;
-            caches.push_back({at.position, at.normal, reach, gathered[i]});
+            caches.push_back(
+                {at.position, at.normal, reach, gathered[i],
+                 by_direction.empty() ? nullptr : std::make_shared<LightByDirection>(by_direction[i])});
         }
     }
     repaired_ += pixels.size();
@@ -442,7 +477,7 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     if (frame.stopped()) return {};
     report(frame, 0.8);
     const Gathered what = shown(s, lighting_.has_sky());
-    LUCARNE_TRY(add_caches(frame, primaries, what));
+    LUCARNE_TRY(add_caches(frame, primaries, what, glossy(frame)));
     std::vector<glm::vec4> light(surfaces.size(), glm::vec4(0.0f));
     std::vector<uint32_t> lonely;
     {
@@ -451,19 +486,26 @@ Result<void> EnvironmentEngine::gather(Frame& frame) {
     }
     LUCARNE_TRY(repair(frame, surfaces, std::move(lonely), what, light));
     if (frame.stopped()) return {};
-    LUCARNE_TRY(reflect_and_upload(frame, what, surfaces, light));
+    LUCARNE_TRY(reflect_and_upload(frame, what, surfaces, caches_, CachedLobes::wide, light));
     if (frame.stopped()) return {};
     lit_ = true;
-    // Lobes would have to be gathered again in every frame.
-    if (!glossy(frame)) kept_.take(frame.camera, s, frame.content, caches_);
+    kept_.take(frame.camera, s, frame.content, caches_);
     return {};
 }
 
+/// Sets the picture to what pixels reflect of the light that they receive, by lobes of that of caches.
 Result<void> EnvironmentEngine::reflect_and_upload(Frame& frame, Gathered what,
-                                                   std::span<const SurfacePoint> surfaces,
+                                                   std::vector<SurfacePoint> surfaces,
+                                                   std::span<const Cache> caches, CachedLobes lobes,
                                                    std::vector<glm::vec4>& light) {
-    LUCARNE_TRY(reflect(frame, lighting_.opencl(), lighting_.gatherer(), what,
-                        {surfaces.begin(), surfaces.end()}, light, lobes_));
+    const std::vector<glm::vec4> received = glossy(frame) ? light : std::vector<glm::vec4>();
+    const std::vector<Reflectance> reflectances = reflect_evenly(frame, surfaces, light);
+    if (glossy(frame) && (lobes == CachedLobes::all || frame.settings[kGlossyCaches])) {
+        const TimedPass pass(frame, "lobes");
+        reflect_by_caches(frame, caches, lobes, reflectances, received, surfaces, light);
+    }
+    LUCARNE_TRY(reflect_by_lobes(frame, lighting_.opencl(), lighting_.gatherer(), what, std::move(surfaces),
+                                 reflectances, light, lobes_));
     if (!frame.stopped()) upload_radiance(frame, light);
     return {};
 }
@@ -491,7 +533,7 @@ Result<void> EnvironmentEngine::follow(Frame& frame) {
         kept_.add(caches);
     }
     fill_by_means(frame.camera, surfaces, lonely, light);
-    return reflect_and_upload(frame, what, surfaces, light);
+    return reflect_and_upload(frame, what, surfaces, kept_.all(), CachedLobes::all, light);
 }
 
 Result<void> EnvironmentEngine::render(Frame& frame) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gi/bounce_options.h"
+#include "gi/engines/environment/glossy_caches.h"
 
 namespace lucarne::gi::environment {
 namespace {
@@ -40,6 +41,13 @@ void KeptCaches::add(std::span<const Cache> caches) {
     const size_t room = kMostKept - caches_.size();
     const auto some = caches.first(std::min(room, caches.size()));
     caches_.insert(caches_.end(), some.begin(), some.end());
+    drop_oldest_directions();
+}
+
+void KeptCaches::drop_oldest_directions() {
+    size_t kept = 0;
+    for (auto cache = caches_.rbegin(); cache != caches_.rend(); ++cache)
+        if (cache->by_direction && ++kept > kMostGlossyCaches) cache->by_direction.reset();
 }
 
 }  // namespace lucarne::gi::environment

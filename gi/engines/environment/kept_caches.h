@@ -10,7 +10,8 @@
 namespace lucarne::gi::environment {
 
 /// The caches of finished frames, for frames of a motion: while only the camera moves, their light is still
-/// right, and most of what the next frames show lies among them. Holds at most kMostKept.
+/// right, and most of what the next frames show lies among them. Holds at most kMostKept; the last
+/// kMostGlossyCaches of them keep light by direction.
 class KeptCaches {
  public:
     static constexpr size_t kMostKept = 131072;  ///< 18 MB
@@ -26,6 +27,8 @@ class KeptCaches {
     std::span<const Cache> all() const { return caches_; }
 
  private:
+    void drop_oldest_directions();
+
     bool any_ = false;
     uint64_t content_ = 0;
     uint32_t bounces_ = 0;

@@ -21,6 +21,18 @@ inline constexpr Option<uint32_t> kCacheSpacing{{
     .cheaper = 1,
 }};
 
+inline constexpr Option<bool> kGlossyCaches{{
+    .kind = OptionKind::flag,
+    .key = "glossy_caches",
+    .label = "glossy caches",
+    .help = "Let surfaces with a shininess of up to 28 reflect the light of caches, which is blurred by 12 "
+            "degrees; else, and if they shine more, they gather by themselves. While the camera moves all "
+            "reflect it",
+    .cost = "half the time of glossy scenes, for softer reflections",
+    .defaults = {true, true, false},
+    .cheaper = 1,
+}};
+
 inline constexpr Option<bool> kBruteForce{{
     .kind = OptionKind::flag,
     .key = "brute_force",

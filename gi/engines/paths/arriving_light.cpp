@@ -63,13 +63,16 @@ glm::vec3 ArrivingLight::reflected(std::span<const PointShare> about, const glm:
     if (cosine <= 0 || !albedo) return glm::vec3(0.0f);
     glm::vec3 light(0.0f);
     float rays = 0;
-    lobes_.each(surface.exponent, normal, to, [&](uint32_t cell, float lobe) {
+    const LobeCells::Lobe lobe(surface.exponent, normal, to);
+    for (uint32_t cell = 0; cell < kDirectionCells; ++cell) {
+        const float weight = lobe.at(cells_.direction(cell));
+        if (!(weight > 0)) continue;
         for (const PointShare& s : about) {
             const size_t at = s.point * size_t{kDirectionCells} + cell;
-            light += s.share * lobe * light_[at];
-            rays += s.share * lobe * static_cast<float>(rays_in_[at]);
+            light += s.share * weight * light_[at];
+            rays += s.share * weight * static_cast<float>(rays_in_[at]);
         }
-    });
+    }
     const glm::vec3 mean = rays > kLeastRays ? light / rays : irradiance;
     return surface.ks * albedo->at(cosine) / kPi * mean;
 }

@@ -37,7 +37,7 @@ class ArrivingLight {
     std::vector<uint8_t> cell_of_;  ///< of each ray of each point
     std::vector<uint8_t> rays_in_;  ///< of each cell of each point
     std::vector<glm::vec3> light_;  ///< of each cell of each point: sum of the radiosities that its rays meet
-    LobeCells lobes_;
+    LobeCells cells_;
     LobeAlbedos albedos_;
 };
 

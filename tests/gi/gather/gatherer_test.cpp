@@ -244,6 +244,31 @@ TEST_F(GathererTest, BuffersThatStayGiveWhatGatheringGives) {
     ASSERT_TRUE(shaded) << shaded.error().line();
     for (size_t i = 0; i < points.size(); ++i)
         EXPECT_NEAR(shaded->at(i).on(points[i].normal).y, gathered[i].y, 1e-4f * gathered[i].y);
+    // All cells of directions together have the same light, from as far away.
+    const auto by_direction = gatherer.shade_by_direction(*opencl_, Gathered::light_of_surfels, buffers);
+    ASSERT_TRUE(by_direction) << by_direction.error().line();
+    const auto distances = buffers.nearness();
+    for (size_t i = 0; i < points.size(); ++i) {
+        float sum = 0, rays = 0, nearness = 0;
+        for (const LightByDirection::Cell& cell : by_direction->at(i).cells) {
+            sum += cell.light.y;
+            rays += cell.rays;
+            nearness += cell.nearness;
+        }
+        EXPECT_NEAR(sum / rays, gathered[i].y, 1e-4f * gathered[i].y);
+        // Of slots, that is to their middles, and from the surface.
+        EXPECT_GT(nearness, .4f * rays * (*distances)[i]);
+        EXPECT_LT(nearness, 1.2f * rays * (*distances)[i]);
+        for (uint32_t cell = 0; cell < kDirectionCells; ++cell)
+            if (direction_of_cell(cell).z < -.3f) {
+                EXPECT_EQ(by_direction->at(i).cells[cell].rays, 0);
+            }
+        LightByDirection more = by_direction->at(i);
+        more.add_ray(points[i].normal, glm::vec3(0, 0, 1), glm::vec3(2));
+        const uint32_t above = direction_cell(glm::vec3(0, 0, 1));
+        EXPECT_NEAR((more.cells[above].light.y - by_direction->at(i).cells[above].light.y) / rays, 2, 1e-4f)
+            << "rays of their own bring shares of the mean";
+    }
     const auto seen = buffers.seen();
     ASSERT_TRUE(seen);
     for (const uint32_t code : *seen)
