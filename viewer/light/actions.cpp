@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/registry.h"
+#include "viewer/light/day.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
 #include "viewer/light/preparing.h"
@@ -48,6 +49,12 @@ bool can_prepare(const Lighting& model) {
 }
 void toggle_handles(const Lighting& model) {
     model.lights.show_handles = !model.lights.show_handles;
+}
+bool has_sun(const Lighting& model) {
+    return moment_of_sun(model.view.scene).has_value();
+}
+bool plays_day(const Lighting& model) {
+    return model.lights.plays_day;
 }
 bool shows_handles(const Lighting& model) {
     return model.lights.show_handles;
@@ -102,6 +109,7 @@ std::span<const Action<const Lighting>> light_actions() {
         Entry{{GLFW_KEY_DELETE, GLFW_MOD_ALT}, "Light", "Delete", remove_light, has_light},
         Entry{{GLFW_KEY_R, GLFW_MOD_ALT}, "Light", "Prepare light in advance", prepare, can_prepare},
         Entry{{GLFW_KEY_R, kAltShift}, "Light", "Stop preparing", stop_preparing, is_preparing},
+        Entry{{GLFW_KEY_SPACE, kAltShift}, "Light", "Play the day", play_day, has_sun, plays_day},
         Entry{{GLFW_KEY_H, GLFW_MOD_ALT}, "Light", "Handles", toggle_handles, nullptr, shows_handles},
     };
     return kActions;

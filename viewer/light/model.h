@@ -48,6 +48,7 @@ struct LightModel {
     std::optional<Mood> mood;  ///< the mood that the lights are of; none once one of them was changed
     size_t selected = 0;       ///< index of the selected light
     bool show_handles = true;
+    bool plays_day = false;  ///< the sun goes through its day
     Preparation preparation;
     bool lumens = false;  ///< show strengths in lm and lx
     std::optional<LightHandle> held;

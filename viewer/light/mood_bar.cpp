@@ -1,5 +1,4 @@
 // The moods as buttons over the picture, where a newcomer finds them.
-#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +6,7 @@
 #include <imgui.h>
 
 #include "gi/registry.h"
+#include "viewer/light/day.h"
 #include "viewer/light/lighting.h"
 #include "viewer/light/preparing.h"
 #include "viewer/opening/moods.h"
@@ -23,21 +23,20 @@ float width_of(std::span<const MoodInfo> all) {
     return width;
 }
 
-const gi::SceneLight* sun_of(const gi::Scene& scene) {
-    const auto sun = std::ranges::find(scene.lights, gi::LightKind::directional, &gi::SceneLight::kind);
-    return sun == scene.lights.end() ? nullptr : &*sun;
-}
-
 /// Lets the user choose the hour of the day. Until then the sun stands where it shows the scan best.
 void draw_hour(const Lighting& model) {
-    const gi::SceneLight* sun = sun_of(model.view.scene);
+    const gi::SceneLight* sun = first_sun(model.view.scene);
     if (!sun) return;
-    gi::SunMoment moment = sun->sun.value_or(gi::SunMoment{});
+    gi::SunMoment moment = *moment_of_sun(model.view.scene);
     gi::LocalTime time = gi::local_time(moment.time);
     float hours = static_cast<float>(time.seconds) / 3600;
     char clock[32] = "time of day";
     if (sun->sun)
         std::snprintf(clock, sizeof clock, "%02d:%02d", time.seconds / 3600, time.seconds / 60 % 60);
+    if (ImGui::Button(model.lights.plays_day ? "Stop" : "Play")) play_day(model);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("the day as a film, from dawn to dusk: an hour takes two seconds");
+    ImGui::SameLine();
     ImGui::SetNextItemWidth(-FLT_MIN);
     const bool changed = ImGui::SliderFloat("##hour", &hours, 0, 23.99f, clock, ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())

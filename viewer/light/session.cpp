@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include "viewer/light/day.h"
 #include "viewer/ui/on_screen.h"
 
 namespace lucarne::viewer {
@@ -24,6 +25,11 @@ void LightSession::follow_sky(const Lighting& model) {
         }
     }
     tools.reading_sky = skies_.reading();
+}
+
+bool LightSession::follow_day(const Lighting& model, double seconds) {
+    advance_day(model, seconds);
+    return model.lights.plays_day;
 }
 
 void LightSession::take_gesture(const Lighting& model) {

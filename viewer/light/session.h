@@ -15,6 +15,8 @@ class LightSession {
 
     /// Starts and finishes loading of sky pictures that the panel requests.
     void follow_sky(const Lighting& model);
+    /// Shows the next picture of a day that is played, `seconds` after the last. Returns whether one is.
+    bool follow_day(const Lighting& model, double seconds);
     /// Lets the mouse move the light while Shift is held.
     void take_gesture(const Lighting& model);
 

@@ -1,15 +1,20 @@
 // Panels of light sources other than lamps: the sun, the sky and emitting classes of points.
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "gi/scene/colour_map.h"
 #include "gi/scene/sky_model.h"
+#include "viewer/light/day.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
 #include "viewer/ui/widgets.h"
@@ -131,6 +136,43 @@ void choose_class(gi::SceneMaterial& material, const Lighting& model) {
     ImGui::EndCombo();
 }
 
+/// Draws the sky as seen from above, with the sun and its way through the day. Returns the moment to which
+/// the mouse drags it.
+std::optional<gi::SunMoment> edit_on_dial(const gi::SunMoment& moment) {
+    const float radius = 4.5f * ImGui::GetFontSize(), rim = 1.25f * radius;
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), middle(corner.x + rim, corner.y + rim);
+    const auto on_screen = [&](const glm::dvec2& place) {
+        return ImVec2(middle.x + radius * static_cast<float>(place.x),
+                      middle.y + radius * static_cast<float>(place.y));
+    };
+    ImGui::InvisibleButton("dial", ImVec2(2 * rim, 2 * rim));
+    ImDrawList* canvas = ImGui::GetWindowDrawList();
+    const ImU32 text = ImGui::GetColorU32(ImGuiCol_Text), pale = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+    const ImU32 golden = IM_COL32(255, 190, 60, 255);
+    canvas->AddCircle(middle, radius, pale, 64);
+    constexpr std::array kSides = {std::pair("N", glm::dvec2(0, -1)), std::pair("E", glm::dvec2(1, 0)),
+                                   std::pair("S", glm::dvec2(0, 1)), std::pair("W", glm::dvec2(-1, 0))};
+    for (const auto& [name, side] : kSides) {
+        const ImVec2 size = ImGui::CalcTextSize(name), at = on_screen(1.13 * side);
+        canvas->AddText(ImVec2(at.x - size.x / 2, at.y - size.y / 2), text, name);
+    }
+    const std::vector<SunOnDial> day = day_on_dial(moment);
+    for (size_t i = 0; i + 1 < day.size(); ++i)
+        if (day[i].elevation > 0 && day[i + 1].elevation > 0)
+            canvas->AddLine(on_screen(day[i].place), on_screen(day[i + 1].place), golden, 2);
+    const SunOnDial sun = on_dial(moment);
+    const ImVec2 at = on_screen(sun.place / std::max(glm::length(sun.place), 1.0));
+    if (sun.elevation > 0)
+        canvas->AddCircleFilled(at, 0.4f * ImGui::GetFontSize(), golden);
+    else
+        canvas->AddCircle(at, 0.4f * ImGui::GetFontSize(), golden);
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+        ImGui::SetTooltip("the sun's way through the day, seen from above; drag the sun along it");
+    if (!ImGui::IsItemActive()) return std::nullopt;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    return nearest_on_dial(day, {(mouse.x - middle.x) / radius, (mouse.y - middle.y) / radius})->moment;
+}
+
 }  // namespace
 
 void draw_sun(const Lighting& model) {
@@ -149,6 +191,10 @@ void draw_sun(const Lighting& model) {
         changed |= edit_degrees("True north", light.sun->north, -360, 360);
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("direction of true north, clockwise from the scan's +y");
+        if (const auto dragged = edit_on_dial(*light.sun); dragged && *dragged != *light.sun) {
+            light.sun = dragged;
+            changed = true;
+        }
         if (changed) set_sun(model, light.sun);
         const gi::SolarPosition at = gi::solar_position(*light.sun);
         ImGui::Text("azimuth %.1f°, elevation %.1f°%s", at.azimuth, at.elevation,

@@ -575,13 +575,15 @@ Result<void> ViewSession::show_until_closed() {
         files_.take_files();
         follow_scans();
         light_.follow_sky(model_.lighting());
+        if (light_.follow_day(model_.lighting(), ImGui::GetIO().DeltaTime)) moved_ = Clock::now();
         take_input();
         if (publish_.follow(model_.publishing(), scans_.source())) moved_ = Clock::now();
         draw_panels();
         const bool drawn = window_.draw(shot_.has_value());
         LUCARNE_TRY(carry_out());
         if (drawn) window_.swap();
-        if (!ImGui::IsAnyMouseDown() && !ImGui::IsAnyItemActive()) model_.history.follow(model_);
+        if (!ImGui::IsAnyMouseDown() && !ImGui::IsAnyItemActive() && !model_.lights.plays_day)
+            model_.history.follow(model_);
         send_request();
         if (seconds_at_rest() > kRest) project_.follow(changed_by_user());
         if (drawn) model_.health.frames.add(std::chrono::duration<double>(Clock::now() - awake).count());
