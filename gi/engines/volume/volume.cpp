@@ -56,6 +56,7 @@ class VolumeEngine final : public Engine {
  private:
     Focus focus_of(const Frame& frame) const;
     Result<void> make_light(Frame& frame, bool in_parts);
+    bool has_light(const Frame& frame) const;
     Result<void> show_light(Frame& frame);
     Result<void> add_direct(Frame& frame, bool any_state);
 
@@ -114,12 +115,16 @@ Result<void> VolumeEngine::make_light(Frame& frame, bool in_parts) {
     return {};
 }
 
+/// Whether the light that was made last may be shown. The bounds may have changed: a scan grows, and its
+/// light of a moment ago is better than none. That of a scan elsewhere is not.
+bool VolumeEngine::has_light(const Frame& frame) const {
+    return light_.basis && light_.basis->origin == frame.origin &&
+           overlap(light_.basis->bounds, frame.bounds);
+}
+
 /// Sets the picture to what pixels reflect of the light that was made last.
 Result<void> VolumeEngine::show_light(Frame& frame) {
-    // The bounds may have changed: a scan grows, and its light of a moment ago is better than none. That of
-    // a scan elsewhere is not.
-    if (!light_.basis || light_.basis->origin != frame.origin ||
-        !overlap(light_.basis->bounds, frame.bounds)) {
+    if (!has_light(frame)) {
         frame.gl.radiance.clear(0);
         return {};
     }
@@ -154,7 +159,8 @@ Result<void> VolumeEngine::render(Frame& frame) {
     light_gbuffers_.begin(frame.gl.device, views_, views_.size());
     missing_ = 0;
     if (wants_indirect(frame.settings) || (direct && !sky_.texels.empty())) {
-        LUCARNE_TRY(make_light(frame, in_parts));
+        // A first picture without it would be black in a room by day.
+        LUCARNE_TRY(make_light(frame, in_parts && has_light(frame)));
         if (frame.stopped()) return {};
         LUCARNE_TRY(show_light(frame));
     } else {
