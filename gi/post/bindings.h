@@ -16,6 +16,7 @@ const uint kBindCounts = 1u;  // of pixels by brightness
 const uint kBindMean = 1u;    // of the frames so far
 const uint kBindCoverage = 2u;
 const uint kBindOther = 2u;  // the other engine's radiance, or its picture
+const uint kBindMaterials = 3u;
 
 // Texture units.
 const uint kUnitGBuffer = 3u;

@@ -9,19 +9,14 @@ layout(std430, binding = kBindPicture) writeonly buffer Picture { uint picture[]
 layout(std430, binding = kBindOther) readonly buffer Other { vec4 other[]; };
 uniform uint pixels;
 uniform uint mode;  // 0: logarithm of the luminance, 1: signed difference, 2: absolute difference
-uniform float gain;
-uniform float offset;
-uniform vec4 ramp[RAMP];  // sRGB
+#include "gi/post/ramp.glsl"
 
 void main() {
     uint at = thread_number();
     if (at >= pixels) return;
     float own = luminance(radiance[at].rgb);
-    float value = own > 0.0 ? log2(own) : -1e30;
+    float value = logarithm(own);
     if (mode != 0u) value = own - luminance(other[at].rgb);
     if (mode == 2u) value = abs(value);
-    float place = value * gain + offset;
-    place = place > 0.0 ? min(place, 1.0) * float(RAMP - 1) : 0.0;  // NaN: the lower end
-    uint below = min(uint(place), uint(RAMP - 2));
-    picture[at] = packUnorm4x8(vec4(mix(ramp[below].rgb, ramp[below + 1u].rgb, place - float(below)), 1.0));
+    picture[at] = ramp_colour(value);
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "gi/device/gl/device.h"
+#include "gi/raster/gbuffer.h"
 #include "gi/scene/scene.h"
 
 namespace lucarne::gi {
@@ -13,12 +14,19 @@ inline constexpr ColourMap kLuminanceMap = ColourMap::turbo, kDifferenceMap = Co
                            kSignedMap = ColourMap::cool_warm;
 
 /// Returns the luminances, cd/m^2, of the ends of the false colours: `wanted` if given, else five stops
-/// below and above the luminance that the exposure makes mid-grey. Photometry is that of photometry.h.
-ValueRange luminance_range(const std::optional<ValueRange>& wanted, double ev);
+/// below and above the luminance that the exposure makes mid-grey; of illuminances, lx, those that do so to
+/// grey surfaces. Photometry is that of photometry.h.
+ValueRange false_colour_range(ToneMap shown, const std::optional<ValueRange>& wanted, double ev);
 
 /// Draws luminance on a logarithmic scale. Buffers and errors as for tone_map().
 Result<void> false_colour(Device& device, const Buffer& radiance, uint32_t pixels, const ValueRange& range,
                           Buffer& picture);
+
+/// Draws the illuminance of surfaces likewise: of the light that would make them reflect this radiance if
+/// they reflected evenly, without what they emit. `materials`: from upload_materials(). Where nothing is
+/// shown it is 0.
+Result<void> illuminance(Device& device, const Buffer& radiance, const GBuffer& gbuffer,
+                         const Buffer& materials, const ValueRange& range, Buffer& picture);
 
 /// Draws the difference `radiance` - `other` of luminances times 2^ev, or its absolute value. `range` is the
 /// difference that gets the last colour; 0 gets the middle of the map, or its first colour for absolute

@@ -88,7 +88,12 @@ struct SceneCamera {
     bool operator==(const SceneCamera&) const = default;
 };
 
-enum class ToneMap { filmic, reinhard, none, false_colour };
+/// The last two are no curves: they show figures by colours, of what leaves surfaces and of what reaches
+/// them.
+enum class ToneMap { filmic, reinhard, none, false_colour, illuminance };
+inline bool shows_figures(ToneMap shown) {
+    return shown >= ToneMap::false_colour;
+}
 
 /// Two engines in one picture.
 struct Comparison {

@@ -201,7 +201,8 @@ double fitting_distance(const dvec3& half, const dvec3& right, const dvec3& up, 
 }  // namespace
 
 std::span<const std::string_view> tone_map_names() {
-    static constexpr std::array<std::string_view, 4> kNames = {"filmic", "reinhard", "none", "false-colour"};
+    static constexpr std::array<std::string_view, 5> kNames = {"filmic", "reinhard", "none", "false-colour",
+                                                               "illuminance"};
     return kNames;
 }
 

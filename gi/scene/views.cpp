@@ -160,4 +160,11 @@ Material device_material(const SceneMaterial& material, double albedo) {
     return result;
 }
 
+std::vector<Material> materials_of(const Scene& scene) {
+    std::vector<Material> materials;
+    for (const SceneMaterial& material : scene.materials)
+        materials.push_back(device_material(material, scene.albedo.scale));
+    return materials;
+}
+
 }  // namespace lucarne::gi

@@ -43,5 +43,7 @@ octree::Cut light_view_cut(const octree::NodeSource& source, const SceneLight& l
 
 /// Converts a material. `albedo` scales the albedo given by the points' colours.
 Material device_material(const SceneMaterial& material, double albedo = 1);
+/// Returns those of a scene, with its scale of the albedo.
+std::vector<Material> materials_of(const Scene& scene);
 
 }  // namespace lucarne::gi

@@ -303,9 +303,7 @@ Result<void> Pipeline::State::draw_with(gi::Engine& by, const FrameRequest& requ
     std::vector<gi::Light> lights;
     for (const gi::SceneLight& light : scene.lights) lights.push_back(gi::device_light(light, local));
     const auto& header = source->header();
-    std::vector<gi::Material> materials;
-    for (const auto& material : scene.materials)
-        materials.push_back(gi::device_material(material, scene.albedo.scale));
+    std::vector<gi::Material> materials = gi::materials_of(scene);
     const bool keeps_light = &by == drawing.engine && drawing.keeps_light;
     // An engine that stands in is there to be quick, also where nothing moves.
     gi::EngineSettings by_settings = settings;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gi/lighting/direct_light.h"
 #include "gi/post/accumulate.h"
 #include "gi/post/backdrop.h"
 #include "gi/post/exposure.h"
@@ -10,6 +11,7 @@
 #include "gi/post/fill_gaps.h"
 #include "gi/post/share_edges.h"
 #include "gi/post/tone_map.h"
+#include "gi/scene/views.h"
 
 namespace lucarne::viewer {
 
@@ -34,7 +36,6 @@ Result<void> Presentation::reserve(size_t pixels, const gi::Scene& scene, const 
 
 Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* other, const gi::Scene& scene,
                                   const gi::GBuffer& gbuffer, const Averaging& averaging) {
-    const uint32_t pixels = gbuffer.width * gbuffer.height;
     ++accumulated_;
     averaged_ = averaging.on;
     edges_ = averaging.edges && accumulated_ == 1;
@@ -44,8 +45,8 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     if (other && mean_shown_) LUCARNE_TRY(add_to_average(other_, gbuffer));
     const bool by_other = engine.info().unlit && other && !other->info().unlit;
     LUCARNE_TRY(expose(by_other ? *other : engine, by_other ? other_ : own_, scene, gbuffer));
-    LUCARNE_TRY(show(engine, scene, pixels, own_));
-    if (other) LUCARNE_TRY(compare(*other, scene, pixels, gbuffer.width));
+    LUCARNE_TRY(show(engine, scene, gbuffer, own_));
+    if (other) LUCARNE_TRY(compare(*other, scene, gbuffer));
     LUCARNE_TRY(
         gi::draw_backdrop(device_, gbuffer, radiance(), mean_shown_, scene.look.backdrop, own_.picture));
     if (averaging.gaps == 0) return {};
@@ -84,27 +85,32 @@ Result<void> Presentation::add_to_average(Images& images, const gi::GBuffer& gbu
     return points_apart_ ? add(true, images.points) : Result<void>();
 }
 
-Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels,
+Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene, const gi::GBuffer& gbuffer,
                                 Images& images) {
     const gi::Buffer& radiance = images.points_radiance(mean_shown_, points_apart_);
+    const uint32_t pixels = gbuffer.width * gbuffer.height;
     const bool unlit = lit_by.info().unlit;
-    if (scene.tone_map == gi::ToneMap::false_colour && !unlit)
-        return gi::false_colour(device_, radiance, pixels, gi::luminance_range(scene.luminance, exposure_.ev),
-                                images.picture);
-    return gi::tone_map(device_, radiance, pixels, unlit ? gi::ToneMap::none : scene.tone_map,
-                        unlit ? gi::Exposure{} : exposure_, images.picture);
+    if (unlit || !gi::shows_figures(scene.tone_map))
+        return gi::tone_map(device_, radiance, pixels, unlit ? gi::ToneMap::none : scene.tone_map,
+                            unlit ? gi::Exposure{} : exposure_, images.picture);
+    const gi::ValueRange range = gi::false_colour_range(scene.tone_map, scene.luminance, exposure_.ev);
+    if (scene.tone_map == gi::ToneMap::false_colour)
+        return gi::false_colour(device_, radiance, pixels, range, images.picture);
+    LUCARNE_TRY(gi::upload_materials(device_, gi::materials_of(scene), materials_));
+    return gi::illuminance(device_, radiance, gbuffer, materials_, range, images.picture);
 }
 
 /// Combines the picture with the other engine's light.
-Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& scene, uint32_t pixels,
-                                   uint32_t width) {
+Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& scene,
+                                   const gi::GBuffer& gbuffer) {
     using Show = gi::Comparison::Show;
     const gi::Comparison& how = *scene.comparison;
+    const uint32_t pixels = gbuffer.width * gbuffer.height;
     if (how.show != Show::split)
         return gi::difference(device_, radiance(), other_.radiance(mean_shown_), pixels,
                               how.show == Show::absolute_difference, exposure_.ev, how.range, own_.picture);
-    LUCARNE_TRY(show(other, scene, pixels, other_));
-    return gi::split(device_, other_.picture, width, pixels / width, how.border, own_.picture);
+    LUCARNE_TRY(show(other, scene, gbuffer, other_));
+    return gi::split(device_, other_.picture, gbuffer.width, gbuffer.height, how.border, own_.picture);
 }
 
 }  // namespace lucarne::viewer

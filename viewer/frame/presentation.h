@@ -77,10 +77,12 @@ class Presentation {
     Result<void> add_to_average(Images& images, const gi::GBuffer& gbuffer);
     Result<void> expose(const gi::Engine& lit_by, const Images& images, const gi::Scene& scene,
                         const gi::GBuffer& gbuffer);
-    Result<void> show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels, Images& images);
-    Result<void> compare(const gi::Engine& other, const gi::Scene& scene, uint32_t pixels, uint32_t width);
+    Result<void> show(const gi::Engine& lit_by, const gi::Scene& scene, const gi::GBuffer& gbuffer,
+                      Images& images);
+    Result<void> compare(const gi::Engine& other, const gi::Scene& scene, const gi::GBuffer& gbuffer);
 
     gi::Device& device_;
+    gi::Buffer materials_;
     Images own_, other_;  ///< of the picture's engine and of the compared engine
     uint32_t accumulated_ = 0;
     bool averaged_ = false, points_apart_ = false;

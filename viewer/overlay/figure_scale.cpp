@@ -77,9 +77,12 @@ std::vector<Mark> figure_scale(const gi::Scene& scene, double ev, const OverlayV
             scale.ticks.push_back({(tick - low) / (high - low), fmt::format("{:g}", tick)});
         return draw(scale, view);
     }
-    if (scene.tone_map != gi::ToneMap::false_colour) return {};
-    const gi::ValueRange range = gi::luminance_range(scene.luminance, ev);
-    return draw({"luminance, cd/m2", gi::kLuminanceMap, logarithmic_ticks(range)}, view);
+    if (!gi::shows_figures(scene.tone_map)) return {};
+    const bool luminance = scene.tone_map == gi::ToneMap::false_colour;
+    const gi::ValueRange range = gi::false_colour_range(scene.tone_map, scene.luminance, ev);
+    return draw(
+        {luminance ? "luminance, cd/m2" : "illuminance, lx", gi::kLuminanceMap, logarithmic_ticks(range)},
+        view);
 }
 
 }  // namespace lucarne::viewer

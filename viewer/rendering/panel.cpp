@@ -49,19 +49,21 @@ void preset_choice(const Rendering& model) {
     ImGui::EndCombo();
 }
 
-/// Edits the range of false colours, cd/m^2.
+/// Edits the range of false colours, cd/m^2 or lx.
 void luminance_range(const Rendering& model) {
     const double ev = model.view.picture ? model.view.picture->exposure_ev : 0;
-    const gi::ValueRange shown = gi::luminance_range(model.view.scene.luminance, ev);
+    const gi::ToneMap map = model.view.scene.tone_map;
+    const gi::ValueRange shown = gi::false_colour_range(map, model.view.scene.luminance, ev);
+    const char* const unit = map == gi::ToneMap::illuminance ? "%.4g lx" : "%.4g cd/m2";
     bool automatic = !model.view.scene.luminance;
     if (ImGui::Checkbox("Automatic range", &automatic)) {
         model.view.scene.luminance = automatic ? std::nullopt : std::optional(shown);
         model.view.shown_changed();
     }
     float ends[2] = {static_cast<float>(shown.low), static_cast<float>(shown.high)};
-    if (!automatic && ImGui::DragFloatRange2(LeftLabel("Range"), &ends[0], &ends[1], ends[1] / 200, 1e-6f,
-                                             1e12f, "%.4g cd/m2", "%.4g cd/m2",
-                                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
+    if (!automatic &&
+        ImGui::DragFloatRange2(LeftLabel("Range"), &ends[0], &ends[1], ends[1] / 200, 1e-6f, 1e12f, unit,
+                               unit, ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
         model.view.scene.luminance = gi::ValueRange{ends[0], std::max(ends[1], ends[0] * 1.01f)};
         model.view.shown_changed();
     }
@@ -97,13 +99,14 @@ void exposure(const Rendering& model) {
         model.view.shown_changed();
     }
     white_balance(model.view);
-    const char* const curves[] = {"Filmic", "Reinhard", "None", "False colours"};
+    const char* const curves[] = {"Filmic", "Reinhard", "None", "False colours: luminance",
+                                  "False colours: illuminance"};
     int curve = static_cast<int>(model.view.scene.tone_map);
-    if (ImGui::Combo(LeftLabel("Tone map"), &curve, curves, 4)) {
+    if (ImGui::Combo(LeftLabel("Tone map"), &curve, curves, 5)) {
         model.view.scene.tone_map = static_cast<gi::ToneMap>(curve);
         model.view.shown_changed();
     }
-    if (model.view.scene.tone_map == gi::ToneMap::false_colour) luminance_range(model);
+    if (gi::shows_figures(model.view.scene.tone_map)) luminance_range(model);
 }
 
 void tell_cost(const char* text) {

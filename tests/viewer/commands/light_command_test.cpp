@@ -92,6 +92,20 @@ TEST_F(LightCommand, FalseColoursShowAKnownLuminanceByTheColourOfItsPlace) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(seen[i], middle[i], 0.02f);
 }
 
+TEST_F(LightCommand, IlluminanceDoesNotDependOnTheColourOfTheSurface) {
+    // 2 W/m^2 straight from above are 358 lx; the left half reflects a tenth of what the right one does.
+    const auto seen = render(lamp(""), "--engine direct --tone-map illuminance --luminance 35.8:3580");
+    const glm::vec3 middle = gi::mapped_colour(gi::kLuminanceMap, 0.5);
+    for (const int x : {30, 98})
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(pixel(seen, x, 10)[i], middle[i], 0.02f) << x;
+    // What a surface emits is no light that it receives.
+    const std::string shining = R"(, "materials": [{"emission": [9, 9, 9]}])";
+    const glm::vec3 dark = gi::mapped_colour(gi::kLuminanceMap, 0);
+    const auto emitted =
+        pixel(render(shining, "--engine direct --tone-map illuminance --luminance 35.8:3580"), 90, 10);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(emitted[i], dark[i], 0.02f);
+}
+
 TEST_F(LightCommand, FlatteningEvensOutTheLightThatColoursWereTakenIn) {
     const auto taken = render("", "--engine unlit --shading flat");
     EXPECT_NEAR(pixel(taken, 30, 32).x, 60 / 255.0f, 0.02f);

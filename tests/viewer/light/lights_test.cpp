@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -223,6 +224,9 @@ TEST(FigureScale, HasPowersOfTenForLuminancesAndNothingForPictures) {
         if (mark.kind == Mark::Kind::text) texts.push_back(mark.text);
     EXPECT_EQ(texts,
               (std::vector<std::string>{"luminance, cd/m2", "0.1", "1", "10", "100", "1000", "10000"}));
+    scene.tone_map = gi::ToneMap::illuminance;
+    const auto marks = figure_scale(scene, 0, view);
+    EXPECT_TRUE(std::ranges::any_of(marks, [](const Mark& mark) { return mark.text == "illuminance, lx"; }));
 }
 
 }  // namespace

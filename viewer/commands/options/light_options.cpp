@@ -34,7 +34,7 @@ void add_light_options(Arguments& command, LightOptions& options) {
         .type_name("NAME");
     command
         .add("--luminance", options.luminance,
-             "Range of false colours, cd/m2; by default around the exposure")
+             "Range of false colours, cd/m2 or with illuminance lx; by default around the exposure")
         .type_name("LOW:HIGH");
     command.add("--albedo", options.albedo, "Scale of the points' albedo").range(0.0, 10.0).type_name("X");
     command.add("--flatten", options.flatten, "Share of the light in the points' colours to divide out")
