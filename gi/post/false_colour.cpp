@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,16 +18,16 @@ constexpr size_t kRamp = 64;
 constexpr double kStops = 5;  // on each side of mid-grey, for automatic false colours
 
 struct Scale {
-    uint32_t mode;
+    std::optional<uint32_t> mode;  ///< of false_colour.comp
     double gain, offset;
     ColourMap map;
 };
 
 /// The places of figures on the logarithmic scale of a range.
-Scale logarithmic(const ValueRange& range) {
+Scale logarithmic(const ValueRange& range, std::optional<uint32_t> mode) {
     const double low = std::log2(range.low / kLumensPerWatt), high = std::log2(range.high / kLumensPerWatt);
     const double gain = 1 / std::max(high - low, 1e-6);
-    return {0, gain, -low * gain, kLuminanceMap};
+    return {mode, gain, -low * gain, kLuminanceMap};
 }
 
 Result<void> paint(Device& device, const char* shader, const Buffer& radiance, const Buffer& other,
@@ -42,7 +43,7 @@ Result<void> paint(Device& device, const char* shader, const Buffer& radiance, c
     picture.bind(post::kBindPicture);
     other.bind(post::kBindOther);
     program->set("pixels", pixels);
-    program->set("mode", scale.mode);
+    if (scale.mode) program->set("mode", *scale.mode);
     program->set("gain", static_cast<float>(scale.gain));
     program->set("offset", static_cast<float>(scale.offset));
     program->set_block("ramp", ramp);
@@ -61,7 +62,7 @@ ValueRange false_colour_range(ToneMap shown, const std::optional<ValueRange>& wa
 
 Result<void> false_colour(Device& device, const Buffer& radiance, uint32_t pixels, const ValueRange& range,
                           Buffer& picture) {
-    return paint(device, kFalseColour, radiance, radiance, pixels, logarithmic(range), picture);
+    return paint(device, kFalseColour, radiance, radiance, pixels, logarithmic(range, 0), picture);
 }
 
 Result<void> illuminance(Device& device, const Buffer& radiance, const GBuffer& gbuffer,
@@ -69,7 +70,7 @@ Result<void> illuminance(Device& device, const Buffer& radiance, const GBuffer& 
     gbuffer.texels.bind_texels(post::kUnitGBuffer, TexelView::four_words);
     materials.bind(post::kBindMaterials);
     return paint(device, "gi/post/illuminance.comp", radiance, radiance, gbuffer.width * gbuffer.height,
-                 logarithmic(range), picture);
+                 logarithmic(range, std::nullopt), picture);
 }
 
 Result<void> difference(Device& device, const Buffer& radiance, const Buffer& other, uint32_t pixels,
