@@ -155,7 +155,7 @@ bool HoleFinder::is_core(const glm::ivec2& cell) const {
     if (narrow_) return grid_.inside(cell.x, cell.y) && state(cell) == PlaneCell::hidden;
     return hidden(cell) && std::ranges::none_of(kAround, [&](const glm::ivec2& step) {
                const glm::ivec2 next = cell + step;
-               return grid_.inside(next.x, next.y) && state(next) == PlaneCell::surface;
+               return grid_.inside(next.x, next.y) && is_surface(state(next));
            });
 }
 
@@ -316,11 +316,13 @@ void HoleFinder::drop_seen_behind() {
 void HoleFinder::enter_voxels() {
     voxel_at_.assign(label_.size(), kNoVoxel);
     const auto all = voxels_.all();
-    for (uint32_t i = 0; i < all.size(); ++i) {
-        if (all[i].plane != plane_) continue;
-        const glm::ivec2 cell = grid_.cell_of(grid_.plane().flat(all[i].position));
-        if (grid_.inside(cell.x, cell.y)) voxel_at_[grid_.index(cell.x, cell.y)] = i;
-    }
+    const auto enter = [&](uint32_t voxel) {
+        const glm::ivec2 cell = grid_.cell_of(grid_.plane().flat(all[voxel].position));
+        if (grid_.inside(cell.x, cell.y)) voxel_at_[grid_.index(cell.x, cell.y)] = voxel;
+    };
+    for (const uint32_t voxel : grid_.plane().bend) enter(voxel);
+    for (uint32_t i = 0; i < all.size(); ++i)
+        if (all[i].plane == plane_) enter(i);
 }
 
 Hole HoleFinder::hole_of(const Component& component) {
@@ -338,7 +340,7 @@ Hole HoleFinder::hole_of(const Component& component) {
             if (!grid_.inside(to.x, to.y)) continue;
             const auto index = static_cast<uint32_t>(grid_.index(to.x, to.y));
             if (is_hidden(grid_[index]) || grid_[index] == PlaneCell::fringe) take(index, hole.edges);
-            if (grid_[index] == PlaneCell::surface) take(index, rim);  // beside a narrow hole
+            if (is_surface(grid_[index])) take(index, rim);  // beside a narrow hole
             if (grid_[index] == PlaneCell::crease) take(index, hole.creases);
         }
     for (const uint32_t cell : hole.edges)
@@ -346,7 +348,7 @@ Hole HoleFinder::hole_of(const Component& component) {
             const glm::ivec2 to = grid_.cell_at(cell) + step;
             if (!grid_.inside(to.x, to.y)) continue;
             const auto index = static_cast<uint32_t>(grid_.index(to.x, to.y));
-            if (grid_[index] == PlaneCell::surface) take(index, rim);
+            if (is_surface(grid_[index])) take(index, rim);
         }
     for (const uint32_t cell : rim) label_[cell] = kNoLabel;
     for (const uint32_t cell : hole.creases) label_[cell] = kNoLabel;
@@ -385,6 +387,7 @@ void HoleFinder::add_rim(Hole& hole, uint32_t index) const {
             place.height += grid_.plane().height(voxel.position);
             place.normal += voxel.normal;
             place.colour += voxel.colour;
+            place.bent |= voxel.plane != plane_;
             ++count;
         }
     if (count == 0) return;

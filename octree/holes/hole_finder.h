@@ -17,6 +17,7 @@ struct HoleRimPlace {
     glm::vec2 flat{0.0f};
     float height = 0;
     glm::vec3 normal{0.0f}, colour{0.0f};
+    bool bent = false;  ///< the surface bends away from the plane here
 };
 
 /// A cell of a hole's rim, and which quarters of it are beside the hole, as bits.
@@ -81,7 +82,7 @@ class HoleFinder {
     }
     /// Whether surface or a crease is at a cell.
     static bool bounds(PlaneCell state) {
-        return state == PlaneCell::surface || state == PlaneCell::fringe || state == PlaneCell::crease;
+        return is_surface(state) || state == PlaneCell::fringe || state == PlaneCell::crease;
     }
     static bool is_hidden(PlaneCell state) { return state == PlaneCell::hidden || state == PlaneCell::seen; }
     bool hidden(const glm::ivec2& cell) const {

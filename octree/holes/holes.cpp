@@ -7,11 +7,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "octree/holes/bends.h"
 #include "octree/holes/hole_finder.h"
 #include "octree/holes/plane_grid.h"
 #include "octree/holes/planes.h"
@@ -51,14 +55,18 @@ float median_spacing(const HoleSample& sample) {
     return std::sqrt(*middle);
 }
 
-/// Returns the surface in a hole: the mean of its rim, weighted by 1 / distance^3 (Shepard 1968).
+/// Returns the weight of a place of the rim at a distance (Shepard 1968).
+float weight_at(const glm::vec2& offset, const PlaneGrid& grid) {
+    const float squared = glm::dot(offset, offset) + grid.cell() * grid.cell();
+    return 1 / (squared * std::sqrt(squared));
+}
+
+/// Returns the surface in a hole: the mean of its rim, weighted by 1 / distance^3.
 FillPoint interpolated(const Hole& hole, const PlaneGrid& grid, const glm::vec2& flat) {
     FillPoint point;
     float weights = 0, height = 0;
     for (const HoleRimPlace& place : hole.rim) {
-        const glm::vec2 offset = place.flat - flat;
-        const float squared = glm::dot(offset, offset) + grid.cell() * grid.cell();
-        const float weight = 1 / (squared * std::sqrt(squared));
+        const float weight = weight_at(place.flat - flat, grid);
         weights += weight;
         height += weight * place.height;
         point.normal += weight * place.normal;
@@ -68,6 +76,25 @@ FillPoint interpolated(const Hole& hole, const PlaneGrid& grid, const glm::vec2&
     point.normal = glm::normalize(point.normal);
     point.colour /= weights;
     return point;
+}
+
+/// Whether a place of a hole is beside a bend, and not all around it are places of the rim: a bent surface
+/// does not go straight on beyond its rim.
+bool is_beyond_bend(const Hole& hole, const PlaneGrid& grid, const glm::vec2& flat) {
+    constexpr float kHalf = std::numbers::pi_v<float>;
+    std::vector<float> angles;
+    angles.reserve(hole.rim.size());
+    float bent = 0, flat_on = 0;
+    for (const HoleRimPlace& place : hole.rim) {
+        const glm::vec2 to = place.flat - flat;
+        angles.push_back(std::atan2(to.y, to.x));
+        (place.bent ? bent : flat_on) += weight_at(to, grid);
+    }
+    if (bent <= flat_on) return false;
+    std::ranges::sort(angles);
+    float gap = angles.front() + 2 * kHalf - angles.back();
+    for (size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
+    return gap >= kHalf;
 }
 
 /// Whether a place is on the same side of all creases within `near` as another, or `beyond` one at most, m.
@@ -87,10 +114,12 @@ class HoleSearch {
         : limits_(limits), cell_(cell), voxels_(sample, cell), views_(sample, limits.memory / 4) {
         double cells = 0;
         const auto most = static_cast<double>(limits.memory / 16);
-        for (const HolePlane& plane : find_planes(voxels_, kMostPlanes)) {
+        std::vector<HolePlane> planes = find_planes(voxels_, kMostPlanes);
+        joined_ = find_bends(voxels_, planes);
+        for (HolePlane& plane : planes) {
             cells += PlaneGrid::cells_of(plane, cell);
             if (!(cells < most)) break;
-            grids_.emplace_back(plane, cell);
+            grids_.emplace_back(std::move(plane), cell);
         }
         size_t with_station = 0;
         for (const HolePoint& point : sample.points) with_station += point.station >= 0;
@@ -101,6 +130,8 @@ class HoleSearch {
         creases_.resize(grids_.size());
         for (size_t i = 0; i < grids_.size(); ++i)
             for (size_t j = 0; j < grids_.size(); ++j) mark(i, j);
+        for (PlaneGrid& grid : grids_)
+            if (work_ < kMostSteps) work_ += mark_beyond_bends(grid, voxels_, kMostSteps - work_);
     }
 
     FoundHoles run() {
@@ -136,7 +167,7 @@ class HoleSearch {
  private:
     /// Marks the creases of one plane with another.
     void mark(size_t plane, size_t other) {
-        if (plane != other && work_ < kMostSteps)
+        if (plane != other && !joined_(plane, other) && work_ < kMostSteps)
             work_ +=
                 mark_creases(grids_[plane], grids_[other], kCreaseReach, kMostSteps - work_, creases_[plane]);
     }
@@ -147,13 +178,34 @@ class HoleSearch {
                 for (const uint32_t cell : *cells) grids_[hole.plane].set(cell, PlaneCell::surface);
     }
 
+    /// Closes holes of one plane in those planes that are parts of the same bent surface.
+    void close_in_joined(std::span<const Hole> holes) {
+        for (const Hole& hole : holes)
+            for (size_t j = 0; j < grids_.size(); ++j) {
+                if (j == hole.plane || !joined_(hole.plane, j)) continue;
+                for (const auto* cells : {&hole.cells, &hole.edges})
+                    for (const uint32_t cell : *cells) close_in(grids_[j], hole, cell);
+            }
+    }
+    void close_in(PlaneGrid& other, const Hole& hole, uint32_t cell) {
+        const PlaneGrid& grid = grids_[hole.plane];
+        const FillPoint point = interpolated(hole, grid, grid.flat_of(grid.cell_at(cell)));
+        const glm::ivec2 at = other.cell_of(other.plane().flat(point.position));
+        if (!other.inside(at.x, at.y)) return;
+        const size_t index = other.index(at.x, at.y);
+        if (other[index] == PlaneCell::hidden || other[index] == PlaneCell::seen)
+            other.set(index, PlaneCell::bend);
+    }
+
     /// Finds holes that `find` looks for in one plane, and closes them.
     template <class Find>
     void find_with_stations(int leak, std::vector<Hole>& holes, const Find& find) {
         const size_t known = holes.size();
         for (size_t i = 0; i < grids_.size(); ++i) {
+            const size_t earlier = holes.size();
             HoleFinder finder(grids_[i], voxels_, i, true, leak);
             find(finder);
+            close_in_joined(std::span(holes).subspan(earlier));
         }
         close(std::span(holes).subspan(known));
     }
@@ -173,14 +225,33 @@ class HoleSearch {
     }
 
     void cover(const HoleSample& sample) {
+        // Which planes bend to each voxel.
+        std::vector<std::pair<uint32_t, uint32_t>> bends;
+        for (uint32_t i = 0; i < grids_.size(); ++i)
+            for (const uint32_t voxel : grids_[i].plane().bend) bends.emplace_back(voxel, i);
+        std::ranges::sort(bends);
+        const std::vector<uint32_t> first = first_of_voxel(bends);
         for (size_t i = 0; i < sample.points.size(); ++i) {
             const uint32_t voxel = voxels_.of_point(i);
             if (voxel == kNoVoxel) continue;
+            const HolePoint& point = sample.points[i];
+            const float spacing = std::min(std::sqrt(point.area), kMostCovered / kDisc * cell_);
+            const auto enter = [&](uint32_t plane, PlaneCell as) {
+                grids_[plane].cover(point.position, kCovered * spacing, kDisc * spacing, as);
+            };
             const uint32_t plane = voxels_.all()[voxel].plane;
-            if (plane >= grids_.size()) continue;
-            const float spacing = std::min(std::sqrt(sample.points[i].area), kMostCovered / kDisc * cell_);
-            grids_[plane].cover(sample.points[i].position, kCovered * spacing, kDisc * spacing);
+            if (plane < grids_.size()) enter(plane, PlaneCell::surface);
+            for (uint32_t at = first[voxel]; at < first[voxel + 1]; ++at)
+                enter(bends[at].second, PlaneCell::bend);
         }
+    }
+
+    /// Returns where the pairs of each voxel begin, of pairs sorted by voxel.
+    std::vector<uint32_t> first_of_voxel(const std::vector<std::pair<uint32_t, uint32_t>>& pairs) const {
+        std::vector<uint32_t> first(voxels_.all().size() + 1, 0);
+        for (const auto& pair : pairs) ++first[pair.first + 1];
+        for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+        return first;
     }
 
     /// Fills each cell with `parts`^2 points, and the rim's cells if `shores`.
@@ -197,6 +268,7 @@ class HoleSearch {
             const float beyond = kBeyondCrease * pitch * cell_;
             if (divided && !same_side(creases_[hole.plane], grid.place_of(flat), inside, cell_, beyond))
                 return;
+            if (is_beyond_bend(hole, grid, flat)) return;
             points.push_back(interpolated(hole, grid, flat));
             points.back().area = pitch * pitch * cell_ * cell_;
         };
@@ -220,8 +292,9 @@ class HoleSearch {
     StationViews views_;
     bool know_stations_ = false;
     std::vector<PlaneGrid> grids_;
+    JoinedPlanes joined_{0};
     std::vector<std::vector<CreasePlane>> creases_;  ///< of each grid
-    uint64_t work_ = 0;                              ///< steps of marking creases
+    uint64_t work_ = 0;                              ///< steps of marking creases and bends
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
@@ -55,11 +56,11 @@ double PlaneGrid::cells_of(const HolePlane& plane, float cell) {
     return std::ceil(double{extent.x}) * std::ceil(double{extent.y});
 }
 
-PlaneGrid::PlaneGrid(const HolePlane& plane, float cell) : plane_(plane), cell_(cell) {
-    const glm::vec2 extent = extent_of(plane, cell);
+PlaneGrid::PlaneGrid(HolePlane plane, float cell) : plane_(std::move(plane)), cell_(cell) {
+    const glm::vec2 extent = extent_of(plane_, cell);
     width_ = static_cast<int>(std::ceil(extent.x));
     height_ = static_cast<int>(std::ceil(extent.y));
-    origin_ = plane.least - (kMargin + 0.5f) * cell;
+    origin_ = plane_.least - (kMargin + 0.5f) * cell;
     cells_.assign(static_cast<size_t>(width_) * static_cast<size_t>(height_), PlaneCell::hidden);
     quarters_.assign(cells_.size(), 0);
 }
@@ -69,17 +70,21 @@ glm::ivec2 PlaneGrid::cell_of(const glm::vec2& flat) const {
     return glm::ivec2(glm::floor(cell));
 }
 
-void PlaneGrid::cover(const glm::vec3& position, float radius, float disc) {
+void PlaneGrid::cover(const glm::vec3& position, float radius, float disc, PlaneCell as) {
     const glm::vec2 flat = plane_.flat(position);
-    const auto enter = [&](int x, int y, PlaneCell as) {
+    const auto enter = [&](int x, int y, bool own) {
         if (!inside(x, y)) return;
         PlaneCell& state = cells_[index(x, y)];
-        if (state == PlaneCell::surface) return;
-        covered_ += as == PlaneCell::surface;
-        state = as;
+        if (state == PlaneCell::surface || (state == PlaneCell::bend && as == PlaneCell::bend)) return;
+        if (own) {
+            covered_ += !is_surface(state);
+            state = as;
+        } else if (!is_surface(state)) {
+            state = PlaneCell::fringe;
+        }
     };
     const glm::ivec2 own = cell_of(flat);
-    enter(own.x, own.y, PlaneCell::surface);
+    enter(own.x, own.y, true);
     if (inside(own.x, own.y)) {
         const glm::vec2 from_middle = flat - flat_of(own);
         quarters_[index(own.x, own.y)] |=
@@ -90,8 +95,7 @@ void PlaneGrid::cover(const glm::vec3& position, float radius, float disc) {
         for (int x = first.x; x <= last.x; ++x) {
             const glm::vec2 offset = flat_of({x, y}) - flat;
             const float squared = glm::dot(offset, offset);
-            if (squared <= disc * disc)
-                enter(x, y, squared <= radius * radius ? PlaneCell::surface : PlaneCell::fringe);
+            if (squared <= disc * disc) enter(x, y, squared <= radius * radius);
         }
 }
 

@@ -15,22 +15,27 @@ enum class PlaneCell : uint8_t {
     seen,     ///< no point is here, but a station saw a surface about here: points are sparse
     fringe,   ///< hidden, but covered by the disc of a point nearby
     surface,  ///< belongs to points of the plane
+    bend,     ///< the plane's surface is here, but bends away from it
     crease,   ///< hidden; another plane of the scan ends here
     open,     ///< a station looked through
 };
+
+inline bool is_surface(PlaneCell state) {
+    return state == PlaneCell::surface || state == PlaneCell::bend;
+}
 
 /// A plane of the scan as a grid of square cells.
 class PlaneGrid {
  public:
     /// `cell`: edge of a cell, m.
-    PlaneGrid(const HolePlane& plane, float cell);
+    PlaneGrid(HolePlane plane, float cell);
 
     /// Returns how many cells the grid of a plane has, in doubles because planes may be of any size.
     static double cells_of(const HolePlane& plane, float cell);
 
-    /// Enters a point of the plane, whose share of the surface reaches to `radius` around it and whose disc
-    /// to `disc`, m.
-    void cover(const glm::vec3& position, float radius, float disc);
+    /// Enters a point, whose share of the surface reaches to `radius` around it and whose disc to `disc`, m.
+    /// `as`: surface, or bend.
+    void cover(const glm::vec3& position, float radius, float disc, PlaneCell as);
     /// Marks cells without points that a station looked through, or whose surroundings it saw.
     void look(const StationViews& views);
 
@@ -38,7 +43,7 @@ class PlaneGrid {
     float cell() const { return cell_; }
     int width() const { return width_; }
     int height() const { return height_; }
-    size_t covered() const { return covered_; }  ///< number of cells with surface
+    size_t covered() const { return covered_; }  ///< number of cells with surface or bends
     bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
     size_t index(int x, int y) const {
         return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);

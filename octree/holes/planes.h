@@ -17,6 +17,7 @@ struct HolePlane {
     glm::vec3 low{0.0f}, high{0.0f};    ///< box of its voxels
     glm::vec2 least{0.0f}, most{0.0f};  ///< the same in the plane's axes
     size_t voxels = 0;
+    std::vector<uint32_t> bend;  ///< voxels beside them at which the surface bends away smoothly (bends.h)
 
     glm::vec2 flat(const glm::vec3& p) const { return {glm::dot(p - centre, u), glm::dot(p - centre, v)}; }
     float height(const glm::vec3& p) const { return glm::dot(p - centre, normal); }

@@ -115,6 +115,33 @@ TEST(Holes, TheShadowOfARailIsFilledThoughItIsNarrowerThanThreeCells) {
     }
 }
 
+/// The shadow goes on along the column, so that no plane of it holds more than a part.
+TEST(Holes, TheShadowOfARailOnAColumnIsFilledAlongTheColumn) {
+    std::vector<Wall> walls = room();
+    add_box(walls, {2.5f, 0.1f, 1.2f}, {2.54f, 4.9f, 1.25f}, false);
+    const size_t first = walls.size();
+    constexpr int kFaces = 48;
+    const glm::vec3 foot(3.6f, 2.5f, 0);
+    add_column(walls, foot, 0.4f, 2.2f, kFaces);
+    const std::vector<glm::vec3> stations{{1.5f, 2.5f, 1.5f}};
+    float expected = 0, filled = 0, off = 0;
+    for (size_t face = first; face < first + kFaces; ++face) {
+        const glm::vec3 n = walls[face].normal();
+        // The side that the station sees at more than 25 degrees.
+        if (glm::dot(n, glm::normalize(stations[0] - walls[face].corner)) > 0.42f)
+            expected += unseen_area(walls, stations, face, 60);
+    }
+    for (const FillPoint& point : fill_points(scan_walls(walls, stations, 1200))) {
+        const float away = glm::length(glm::vec2(point.position - foot));
+        if (away > 0.6f || point.position.z < 0.3f || point.position.z > 2.1f) continue;
+        (std::abs(away - 0.4f) < 0.015f ? filled : off) += point.area;
+    }
+    std::printf("%.3f m2 hidden, %.3f filled, %.3f off\n", expected, filled, off);
+    EXPECT_GT(filled, 0.9f * expected);
+    EXPECT_LT(filled, 2 * expected) << "planes of the column share the hole";
+    EXPECT_LT(off, 0.02f * filled);
+}
+
 /// A block's shadow on a wall that stands free, and of a pole over the block up to the wall's end. `pole`:
 /// how wide it is, m. Returns the filled and the hidden area of the wall.
 glm::vec2 shadow_of_a_block(float pole) {

@@ -48,6 +48,19 @@ inline void add_box(std::vector<Wall>& walls, const glm::vec3& low, const glm::v
     add(low + y, x, z);
 }
 
+/// An upright column of so many faces with a flat top.
+inline void add_column(std::vector<Wall>& walls, const glm::vec3& foot, float radius, float height,
+                       int faces) {
+    const float step = 2 * std::numbers::pi_v<float> / static_cast<float>(faces);
+    const auto corner = [&](int i) {
+        const float at = step * static_cast<float>(i);
+        return foot + radius * glm::vec3(std::cos(at), std::sin(at), 0);
+    };
+    for (int i = 0; i < faces; ++i) walls.push_back({corner(i), corner(i + 1) - corner(i), {0, 0, height}});
+    const float half = radius * std::numbers::sqrt2_v<float> / 2;  // a square: the rim of the top stays open
+    walls.push_back({foot + glm::vec3(-half, -half, height), {2 * half, 0, 0}, {0, 2 * half, 0}});
+}
+
 inline std::optional<std::pair<float, size_t>> nearest_wall(const std::vector<Wall>& walls,
                                                             const glm::vec3& from, const glm::vec3& to) {
     std::optional<std::pair<float, size_t>> nearest;
