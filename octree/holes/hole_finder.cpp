@@ -33,6 +33,10 @@ constexpr float kWall = 0.3f;          ///< |z| of a wall's normal, at most
 constexpr float kBeside = 1.5f;        ///< cells: what is so near belongs to the plane
 constexpr float kLookedBehind = 3.0f;  ///< m
 
+/// So many cells around a place of the rim have its colour. The outermost points often have that of what
+/// hides the hole, because a photograph is not taken from just where the scanner stands, or are black.
+constexpr int kColours = 3;
+
 constexpr size_t kMostRim = 64;  ///< places of the rim from which a hole's colours and heights follow
 
 constexpr std::array<glm::ivec2, 8> kAround = {
@@ -379,21 +383,26 @@ void HoleFinder::add_rim(Hole& hole, uint32_t index) const {
     HoleRimPlace place;
     float count = 0;
     const glm::ivec2 cell = grid_.cell_at(index);
-    for (int y = cell.y - 1; y <= cell.y + 1; ++y)
-        for (int x = cell.x - 1; x <= cell.x + 1; ++x) {
+    std::vector<glm::vec3> colours;
+    for (int y = cell.y - kColours; y <= cell.y + kColours; ++y)
+        for (int x = cell.x - kColours; x <= cell.x + kColours; ++x) {
             if (!grid_.inside(x, y) || voxel_at_[grid_.index(x, y)] == kNoVoxel) continue;
             const Voxel& voxel = voxels_.all()[voxel_at_[grid_.index(x, y)]];
+            colours.push_back(voxel.colour);
+            if (std::max(std::abs(x - cell.x), std::abs(y - cell.y)) > 1) continue;
             place.flat += grid_.plane().flat(voxel.position);
             place.height += grid_.plane().height(voxel.position);
             place.normal += voxel.normal;
-            place.colour += voxel.colour;
             place.bent |= voxel.plane != plane_;
             ++count;
         }
     if (count == 0) return;
     place.flat /= count;
     place.height /= count;
-    place.colour /= count;
+    const auto middle = colours.begin() + static_cast<ptrdiff_t>(colours.size() / 2);
+    std::ranges::nth_element(colours, middle, {},
+                             [](const glm::vec3& colour) { return colour.x + colour.y + colour.z; });
+    place.colour = *middle;
     hole.rim.push_back(place);
 }
 

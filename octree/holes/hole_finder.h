@@ -136,7 +136,7 @@ class HoleFinder {
     Hole hole_of(const Component& component);
     /// Returns which quarters of a cell are beside cells of the hole that is being made.
     uint8_t quarters_beside_hole(uint32_t index) const;
-    /// Adds the mean of the voxels at a cell of the rim.
+    /// Adds the mean of the voxels at a cell of the rim, with the median colour of those around.
     void add_rim(Hole& hole, uint32_t index) const;
     bool steep(const Hole& hole, const Component& component) const;
 

@@ -69,6 +69,17 @@ TEST(Holes, TheDiscBelowATripodIsFilled) {
               0);
 }
 
+/// A camera beside the scanner did not see the outermost points.
+TEST(Holes, BlackPointsAtTheRimDoNotDarkenTheFilling) {
+    const auto away = [](const glm::vec2& at) { return glm::length(at - glm::vec2(2.5f)); };
+    HoleSample sample = floor_without(5, [&](const glm::vec2& at) { return away(at) < 0.8f; });
+    for (HolePoint& point : sample.points)
+        point.colour = away(glm::vec2(point.position)) < 0.82f ? glm::vec3(0) : glm::vec3(0.5f);
+    const auto points = fill_points(sample);
+    ASSERT_FALSE(points.empty());
+    for (const FillPoint& point : points) ASSERT_NEAR(point.colour.x, 0.5f, 0.05f);
+}
+
 /// The block's shadow covers floor and wall up to their corner, where no points are.
 TEST(Holes, ACornerInAShadowIsFilled) {
     std::vector<Wall> walls = room();
