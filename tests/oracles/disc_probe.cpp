@@ -1,10 +1,12 @@
 // Prints which discs of a cache the rays through pixels of its first view meet, to find why a pixel is wrong:
 //   disc_probe CACHE MOOD WIDTHxHEIGHT [SCENE|-] [X,Y ...]
 //   disc_probe CACHE MOOD WIDTHxHEIGHT SCENE --map GBUFFER.exr MAP.png
+//   disc_probe CACHE MOOD WIDTHxHEIGHT SCENE --kinds GBUFFER.exr
 // With the name of the virtual scene that was scanned (`lucarne generate`) each disc is compared with the
 // true surface. Discs are at full detail; a picture may draw fewer and larger ones. --map compares the output
 // of `lucarne render --gbuffer` with it, and draws what is wrong: blue: no surfel; red: nearer; yellow:
-// farther than the truth; green: normals off by more than 10 degrees.
+// farther than the truth; green: normals off by more than 10 degrees. --kinds prints which discs make the
+// pixels that are nearer than the truth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,7 @@
 
 #include "gi/scene/views.h"
 #include "gi/shared/disc.h"
+#include "io/core/parallel.h"
 #include "io/image/image.h"
 #include "tests/bench/all_surfels.h"
 #include "tests/bench/true_surface.h"
@@ -128,6 +131,96 @@ Result<void> draw_map(const io::SceneGeometry& geometry, const gi::SceneCamera& 
     return io::write_png(map, picture, true);
 }
 
+/// What is wrong with the disc that a pixel shows although it is nearer than the truth.
+enum class Kind {
+    none,
+    air,
+    tilted_crease,
+    tilted,
+    line_crease,
+    line_border,
+    overhang_crease,
+    overhang,
+    counted
+};
+constexpr std::array<const char*, size_t(Kind::counted)> kKinds = {"no disc at full detail",
+                                                                   "in the air",
+                                                                   "tilted, at a crease",
+                                                                   "tilted elsewhere",
+                                                                   "reaches over, line at a crease",
+                                                                   "reaches over, line elsewhere",
+                                                                   "reaches over, no line, at a crease",
+                                                                   "reaches over, no line"};
+
+Kind kind_of(const Met& met, const bench::DiscFit& fit) {
+    if (fit.distance > bench::kOtherSurface) return Kind::air;
+    if (fit.angle > bench::kBentDegrees) return fit.at_crease ? Kind::tilted_crease : Kind::tilted;
+    if (glm::length(met.surfel->edge) > 0) return fit.at_crease ? Kind::line_crease : Kind::line_border;
+    return fit.at_crease ? Kind::overhang_crease : Kind::overhang;
+}
+
+/// Prints which discs make the pixels that are nearer than the truth, judged by some of these pixels.
+Result<void> print_kinds(const io::SceneGeometry& geometry, const gi::SceneCamera& camera, ImageSize size,
+                         const char* gbuffer, const std::vector<gi::Surfel>& surfels) {
+    constexpr size_t kPixels = 1500;
+    struct Sum {
+        double count = 0, angle = 0, off = 0, radius = 0, over = 0, line = 0, pixels = 0;
+    };
+    const bench::TrueView truth(geometry, camera, size, 0);
+    const gi::CameraView view = gi::camera_view(camera, size, {});
+    const bench::NearestSurface surface(geometry);
+    LUCARNE_ASSIGN(const io::Image seen, io::read_exr(gbuffer));
+    if (seen.width != size.width || seen.height != size.height) return failed(gbuffer, "has another size");
+    std::vector<size_t> nearer;
+    for (size_t i = 0; i < seen.pixels.size(); ++i)
+        if (truth.cause(i, seen.pixels[i]) == bench::Cause::nearer) nearer.push_back(i);
+    const size_t used = std::min(nearer.size(), kPixels);
+    std::vector<std::pair<Kind, Sum>> found(used);
+    parallel_ranges(used, 8, [&](size_t first, size_t last) {
+        for (size_t n = first; n < last; ++n) {
+            const size_t i = nearer[n * nearer.size() / used];
+            const glm::vec2 at(static_cast<float>(i % size.width) + .5f,
+                               static_cast<float>(i / size.width) + .5f);
+            const auto met = discs_at(surfels, view, at);
+            const auto shown = std::find_if(met.begin(), met.end(), [&](const Met& m) {
+                return !m.beyond && !m.centre && m.depth > .99f * seen.pixels[i].w - .02f;
+            });
+            if (shown == met.end()) continue;
+            const gi::Surfel& s = *shown->surfel;
+            const bench::DiscFit fit = surface.fit(s.position, s.normal, s.radius, s.edge);
+            const float edge = glm::length(s.edge);
+            const double pixel =
+                2 * glm::length(glm::dvec3(glm::vec3(view.up))) * double{shown->depth} / view.height;
+            found[n] = {kind_of(*shown, fit),
+                        {1, fit.angle, double{shown->off}, double{s.radius},
+                         surface.distance(
+                             glm::dvec3(gi::view_start(view, at) + gi::view_ray(view, at) * shown->depth)) /
+                             pixel,
+                         edge > 0 ? 1 / double{edge * s.radius} : 0.0, double{s.radius} / pixel}};
+        }
+    });
+    std::printf("%zu pixels are nearer than the truth; of %zu of them:\n", nearer.size(), used);
+    for (size_t k = 0; k < kKinds.size(); ++k) {
+        Sum sum;
+        std::vector<double> over;
+        for (const auto& [kind, one] : found) {
+            if (static_cast<size_t>(kind) != k) continue;
+            sum.count += 1, sum.angle += one.angle, sum.off += one.off, sum.radius += one.radius;
+            sum.line += one.line, sum.pixels += one.pixels;
+            over.push_back(one.over);
+        }
+        std::sort(over.begin(), over.end());
+        const double n = std::max(1.0, sum.count);
+        std::printf(
+            "%-36s %5.1f %%: %4.1f deg, met at %.2f radii, line at %.2f; radius %.3f m, %4.1f pixels; "
+            "%.1f and %.1f pixels (p50, p90) off the surface\n",
+            kKinds[k], 100 * sum.count / static_cast<double>(std::max<size_t>(1, used)), sum.angle / n,
+            sum.off / n, sum.line / n, sum.radius / n, sum.pixels / n,
+            over.empty() ? 0.0 : over[over.size() / 2], over.empty() ? 0.0 : over[over.size() * 9 / 10]);
+    }
+    return {};
+}
+
 Result<void> probe(int count, char** arguments) {
     viewer::DrawingOptions options;
     options.mood = arguments[2];
@@ -148,6 +241,8 @@ Result<void> probe(int count, char** arguments) {
         return draw_map(*geometry, camera, drawing.size, arguments[6], arguments[7]);
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     LUCARNE_ASSIGN(const auto surfels, bench::all_surfels(*device, arguments[1]));
+    if (geometry && count == 7 && std::string(arguments[5]) == "--kinds")
+        return print_kinds(*geometry, camera, drawing.size, arguments[6], surfels);
     const gi::CameraView view = gi::camera_view(camera, drawing.size, {});
     std::optional<bench::NearestSurface> surface;
     if (geometry) surface.emplace(*geometry);

@@ -21,9 +21,11 @@ constexpr float kGap = 10.0f;
 /// the plane than in it, and those in it along a line, so not farther apart across it than kSheet. Of leaves
 /// this says nothing: the points that belong to the surface lie up to kFlat over the plane.
 constexpr float kSheet = 2.5f, kFlat = 0.5f;
-constexpr float kBelow = 2.0f;     ///< and so far inside
-constexpr float kOutside = 0.5f;   ///< the border lies so far outside the outermost points
-constexpr float kFarthest = 2.0f;  ///< lines farther from the point are of no use
+constexpr float kBelow = 2.0f;  ///< and so far inside
+/// The border lies so far outside the line over the outermost points. That line lies over the outermost of
+/// several points, which is nearer to the end of the surface than half a spacing.
+constexpr float kOutside = 0.375f;
+constexpr float kFarthest = 2.0f;                           ///< lines farther from the point are of no use
 constexpr float kOthersAhead = 2.5f, kOthersBehind = 1.5f;  ///< of the line: where other surfaces count
 constexpr float kOthersHeight = 3.0f;
 constexpr float kAhead = 1.0f;  ///< another surface that begins so far beyond the line goes on from this one

@@ -68,7 +68,7 @@ constexpr float kBeyondEdge = 0.05f, kRoughEdge = 0.25f, kOverEdge = 0.5f;
 /// At a border points up to so many deviations of the heights, and so many spacings more, over the tangent
 /// plane belong to the surface.
 constexpr float kRoughLevel = 3.0f, kFlatLevel = 0.1f;
-/// Points nearer to their border than this, in spacings, are the outermost: it stands .5 beyond them.
+/// Points nearer to their border than this, in spacings, are the outermost: it stands .375 beyond them.
 constexpr float kOutermost = 1.0f;
 /// Largest share of a point of a narrow face, in squares of the spacing of all points around.
 constexpr float kMostNarrow = 1.2f;
