@@ -78,6 +78,8 @@ constexpr float kRoughSide = 0.5f;
 /// A crease may be none if the points beyond it lie so many spacings off a plane, as on a pipe. Else a border
 /// gives the line only if it is this much nearer: at the corner of a box both are there.
 constexpr float kDoubtful = 0.15f, kMuchNearer = 0.5f;
+/// A border may lie so many spacings farther out than it is taken to be.
+constexpr float kBorderDoubt = 0.125f;
 /// A point farther from a dense patch than this many of the patch's spacings is too far for the patch's plane
 /// to tell; and for the plane of many of its points, whose normal must be known to kClearDeviation radians.
 /// Floors below scanners have up to .018 there, the piece of a cable that got a plate .03.
@@ -288,7 +290,8 @@ class SiteEstimator {
         // The surface of a thin pipe has a border nearby as well as a crease.
         const float to_crease = creased ? side->first.distance : std::numeric_limits<float>::infinity();
         const bool doubtful = creased && side->first.roughness > kDoubtful * spacing;
-        if (border && border->distance <= (doubtful || !creased ? 1.0f : kMuchNearer) * to_crease)
+        if (border &&
+            border->distance + kBorderDoubt * rim <= (doubtful || !creased ? 1.0f : kMuchNearer) * to_crease)
             line = border;
         if (line) lines_.push_back(*line);
         const bool at_border = std::min(to_crease, border ? border->distance : to_crease) < kOutermost * rim;
