@@ -40,6 +40,11 @@ uint64_t bake_key(std::string_view engine, const Precomputes& how, const BakeInp
         hash.add(std::span<const glm::vec3>(sky.texels));
         hash.add(std::span<const float>(&sky.rotation, 1));
     }
+    if (how.lighting_region && input.lighting_region) {
+        const glm::vec3 corners[] = {input.lighting_region->min, input.lighting_region->max};
+        hash.add("lighting region");
+        hash.add(std::span<const glm::vec3>(corners));
+    }
     for (const OptionInfo* option : how.options) {
         hash.add(option->key);
         hash.add(option_text(*option, input.settings.get(*option)));

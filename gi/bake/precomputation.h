@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct BakeInput {
     std::vector<Light> lights;  ///< in the cut's local frame
     std::shared_ptr<const Environment> environment;
     EngineSettings settings;
+    std::optional<Bounds> lighting_region;  ///< Scene::lighting_region in the cut's local frame, m
     /// Whether pictures show what is usable meanwhile. The result does not depend on it.
     bool is_shown = true;
 };
@@ -67,7 +69,7 @@ struct Precomputes {
     std::unique_ptr<Precomputation> (*make)() = nullptr;
     uint32_t version = 1;  ///< of what save() writes; another version is not restored
     /// What the result depends on, beside the places, areas and normals of the surfels.
-    bool colours = false, materials = false, lights = false, environment = false;
+    bool colours = false, materials = false, lights = false, environment = false, lighting_region = false;
     std::span<const OptionInfo* const> options = {};
     /// Estimates the cost for so many surfels; null: unknown.
     BakeCost (*cost)(const EngineSettings& settings, uint64_t surfels) = nullptr;

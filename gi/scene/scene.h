@@ -46,6 +46,9 @@ struct SceneLight {
 /// Returns whether the light is switched on and, if it is a sun, above the horizon.
 bool shines(const SceneLight& light);
 
+/// The corners of a box with the least and with the largest coordinates, world units.
+using SceneBox = std::pair<glm::dvec3, glm::dvec3>;
+
 struct SceneMaterial {
     std::string name;
     glm::dvec3 diffuse{1.0};  ///< scale of the scan's colour
@@ -56,7 +59,7 @@ struct SceneMaterial {
     // the default (index 0).
     std::optional<int> classification;
     std::optional<int> scan;
-    std::optional<std::pair<glm::dvec3, glm::dvec3>> box;
+    std::optional<SceneBox> box;
 
     bool operator==(const SceneMaterial&) const = default;
     /// What decides which points have this material, for comparisons.
@@ -121,6 +124,7 @@ struct Scene {
     std::shared_ptr<const Environment>
         environment;  ///< lights the scene and replaces `background`; may be null
     bool environment_on = true;
+    std::optional<SceneBox> lighting_region;  ///< where lamps will be; empty: anywhere
     Albedo albedo;
     Look look;  ///< how points are shown, whichever engine lights them
     std::optional<Comparison> comparison;
@@ -129,9 +133,9 @@ struct Scene {
     /// All that the light of a picture depends on, for comparisons: not how it is shown (exposure, tone
     /// curve, a comparison's border), nor the cameras.
     auto light_inputs() const {
-        return std::tuple_cat(
-            std::tie(lights, materials, background, environment, environment_on, albedo, look),
-            std::make_tuple(comparison ? comparison->engine : std::string()));
+        return std::tuple_cat(std::tie(lights, materials, background, environment, environment_on,
+                                       lighting_region, albedo, look),
+                              std::make_tuple(comparison ? comparison->engine : std::string()));
     }
 };
 

@@ -28,6 +28,17 @@ std::vector<std::string_view> list(std::span<const std::string_view> names) {
     return {names.begin(), names.end()};
 }
 
+/// Reads the box of this key; empty: there is none.
+Result<std::optional<SceneBox>> read_box(JsonObject& object, std::string_view key) {
+    LUCARNE_ASSIGN(auto box, object.object(key));
+    if (!box) return std::optional<SceneBox>();
+    LUCARNE_ASSIGN(const dvec3 min, box->vector("min", kCoordinate));
+    LUCARNE_ASSIGN(const dvec3 max, box->vector("max", kCoordinate));
+    if (min.x > max.x || min.y > max.y || min.z > max.z) return box->wrong("lies below min", "max");
+    LUCARNE_TRY(box->finish());
+    return std::optional<SceneBox>({min, max});
+}
+
 Result<SceneMaterial> read_material(JsonObject object) {
     SceneMaterial material;
     LUCARNE_ASSIGN(material.name, object.text("name", ""));
@@ -40,14 +51,7 @@ Result<SceneMaterial> read_material(JsonObject object) {
     if (classification >= 0) material.classification = static_cast<int>(classification);
     LUCARNE_ASSIGN(const int64_t scan, object.integer("scan", 0, 65535, -1));
     if (scan >= 0) material.scan = static_cast<int>(scan);
-    LUCARNE_ASSIGN(auto box, object.object("box"));
-    if (box) {
-        LUCARNE_ASSIGN(const dvec3 min, box->vector("min", kCoordinate));
-        LUCARNE_ASSIGN(const dvec3 max, box->vector("max", kCoordinate));
-        if (min.x > max.x || min.y > max.y || min.z > max.z) return box->wrong("lies below min", "max");
-        LUCARNE_TRY(box->finish());
-        material.box = {min, max};
-    }
+    LUCARNE_ASSIGN(material.box, read_box(object, "box"));
     LUCARNE_TRY(object.finish());
     return material;
 }
@@ -154,6 +158,7 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
                        read_environment(std::move(sky), folder, direction_to_sun(scene.lights)));
     }
     update_daylight(scene);
+    LUCARNE_ASSIGN(scene.lighting_region, read_box(root, "lighting_region"));
     LUCARNE_TRY(read_materials(root, scene));
     LUCARNE_ASSIGN(const auto albedo, root.object("albedo"));
     if (albedo) {

@@ -76,6 +76,10 @@ Json write_light(const SceneLight& light) {
     return written;
 }
 
+Json write_box(const SceneBox& box) {
+    return {{"min", vector(box.first)}, {"max", vector(box.second)}};
+}
+
 Json write_material(const SceneMaterial& material) {
     const SceneMaterial plain;
     Json written = Json::object();
@@ -87,8 +91,7 @@ Json write_material(const SceneMaterial& material) {
     put(written, "emission", material.emission, plain.emission);
     if (material.classification) written["class"] = *material.classification;
     if (material.scan) written["scan"] = *material.scan;
-    if (material.box)
-        written["box"] = {{"min", vector(material.box->first)}, {"max", vector(material.box->second)}};
+    if (material.box) written["box"] = write_box(*material.box);
     return written;
 }
 
@@ -178,6 +181,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
         written["environment"] = write_environment(*scene.environment, scene, folder);
     else
         put(written, "background", scene.background, dvec3(0));
+    if (scene.lighting_region) written["lighting_region"] = write_box(*scene.lighting_region);
     for (const SceneLight& light : scene.lights) written["lights"].push_back(write_light(light));
     put_materials(written, scene.materials);
     Json albedo = Json::object();

@@ -2,7 +2,8 @@
 // light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
 // (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [ENGINE] [--scale
 // S] [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). ENGINE:
-// micro or environment (gathered_figures.h) or yue (paths_figures.h) instead; or `gaitatzes [5] [6]
+// micro or environment (gathered_figures.h) instead; or `yue [1] [7] [12] [13]` (paths_figures.h,
+// paths_cells.h): table 1 (with figs 10 and 11) and these figures of Yue et al. 2007; or `gaitatzes [5] [6]
 // [7]`: these chapters of Gaitatzes 2012 (volume_figures.h, voxel_figures.h). This is a program and not a
 // test; it takes about ten minutes on two cores.
 #include <algorithm>
@@ -238,5 +239,5 @@ int main(int argc, char** argv) {
     return lucarne::bench::bench_main(argc, argv, lucarne::make_figures,
                                       {.options = {"only"},
                                        .subjects = {"micro", "environment", "yue", "gaitatzes"},
-                                       .parts = {"5", "6", "7"}});
+                                       .parts = {"1", "5", "6", "7", "12", "13"}});
 }

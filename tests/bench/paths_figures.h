@@ -1,5 +1,5 @@
 // The experiments of the paper behind the engine `paths`, Yue et al. 2007, on scenes of ours: table 1 and
-// figs 10 and 11. What has no counterpart here is said in the headings.
+// figs 7 and 10 to 14.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,7 @@
 #include "gi/scene/scene.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/gathered_figures.h"
+#include "tests/bench/paths_cells.h"
 #include "tests/bench/scan.h"
 #include "tests/bench/stage.h"
 
@@ -116,10 +117,9 @@ inline Result<void> times_of_paths(Stage& stage, const BenchRun& run, const std:
 }
 
 inline Result<void> figures_of_paths(gi::Device& device, const BenchRun& run) {
-    heading(
-        "Yue et al. 2007; no counterpart: fig. 7 a (cells are always adaptive), fig. 12 b (rays are not "
-        "split), fig. 13 (textures of a GPU). Cornell box, nave, arbour and loft stand for Box, Sponza, Tree "
-        "and Room");
+    if (run.wants("7") || run.wants("12") || run.wants("13")) LUCARNE_TRY(figures_of_cells(device, run));
+    if (!run.wants("1")) return {};
+    heading("Yue et al. 2007: Cornell box, nave, arbour and loft stand for Box, Sponza, Tree and Room");
     using Named = std::pair<std::string, std::string>;
     for (const auto& [name, scene] : run.cases<Named>(
              {{"cornell", "cornell"}, {"nave", "nave"}, {"arbour", "arbour"}, {"loft", "loft-lamps"}})) {

@@ -45,6 +45,7 @@ EngineBake::Inputs EngineBake::inputs_of(const BakeSubject& subject) {
         inputs.albedo_scale = scene.albedo.scale;
     }
     if (how.environment) inputs.environment = scene.environment;
+    if (how.lighting_region) inputs.lighting_region = scene.lighting_region;
     for (const gi::OptionInfo* option : how.options) inputs.options.push_back(subject.settings.get(*option));
     return inputs;
 }
@@ -80,6 +81,8 @@ void EngineBake::update(const BakeSubject& subject) {
         order.input.materials.push_back(gi::device_material(material, subject.scene.albedo.scale));
     order.input.environment = subject.scene.environment;
     order.input.settings = subject.settings;
+    if (const auto& region = subject.scene.lighting_region)
+        order.input.lighting_region = {frame_.to_local(region->first), frame_.to_local(region->second)};
     order.input.is_shown = subject.is_shown;
     if (const auto identity = source.identity()) {
         order.input.source = identity->content;

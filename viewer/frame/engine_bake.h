@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,7 @@ class EngineBake {
         std::vector<gi::SceneMaterial> materials;
         double albedo_scale = 1;
         std::shared_ptr<const gi::Environment> environment;
+        std::optional<gi::SceneBox> lighting_region;
         std::vector<gi::OptionValue> options;
         bool operator==(const Inputs&) const = default;
     };

@@ -154,12 +154,14 @@ class PathsPrecomputation final : public Precomputation {
                          PathPlan{{kCoarserSpacing * spacing_.least, kCoarserSpacing * spacing_.most},
                                   kCoarseRays,
                                   kCoarseEntries,
-                                  input.settings[kSeed]});
+                                  input.settings[kSeed],
+                                  input.lighting_region});
     }
     void begin_whole(const BakeInput& input) {
         is_coarse_ = false;
-        builder_.emplace(*surfaces_, PathPlan{spacing_, input.settings[kGatherRays],
-                                              input.settings[kEntryPoints], input.settings[kSeed]});
+        builder_.emplace(*surfaces_,
+                         PathPlan{spacing_, input.settings[kGatherRays], input.settings[kEntryPoints],
+                                  input.settings[kSeed], input.lighting_region});
     }
     /// Makes the next snapshot up to what points share: reads what entry points reflect from the surfels, so
     /// that colours and materials may change without any ray.
@@ -228,6 +230,7 @@ constexpr const OptionInfo* kOfBake[] = {&kPointSpacing.info, &kGatherRays.info,
 const Precomputes kPathsPrecomputes{
     .make = []() -> std::unique_ptr<Precomputation> { return std::make_unique<PathsPrecomputation>(); },
     .version = 9,
+    .lighting_region = true,
     .options = kOfBake,
     .cost = &cost_of};
 

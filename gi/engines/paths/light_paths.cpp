@@ -10,6 +10,7 @@
 #include <glm/packing.hpp>
 
 #include "gi/engines/paths/cosine_rays.h"
+#include "gi/engines/paths/lamp_views.h"
 #include "gi/lighting/area_points.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/tracing/light_sampling.h"
@@ -28,6 +29,8 @@ constexpr size_t kTried = 8;
 /// a quarter of that half of them, and so on.
 constexpr float kWholeArea = 0.25f;
 constexpr float kCurve = 1023;
+/// Entry points that each lamp should see where one knows where lamps will be, as a share of all.
+constexpr double kSeenByLamp = 1;
 
 /// Returns which of these sides lies at a share 0..1 of the area of all, in their order.
 class ByArea {
@@ -72,6 +75,8 @@ class EntryChooser::MetPlaces {
             weights_[leaf] += weight_of(hit);
         });
     }
+    /// How many rays met each leaf.
+    std::span<const uint32_t> met() const { return met_; }
     /// Returns kTried times so many hits of each leaf, at the middles of equal parts of the weight of all in
     /// their order, which looks random.
     std::vector<std::vector<uint32_t>> choose_some(std::span<const uint32_t> own) const {
@@ -165,7 +170,8 @@ glm::vec3 place_on(const Surfel& disc, uint32_t code) {
 
 EntryChooser::EntryChooser(const Surfaces& surfaces, const GroupBuilder& builder,
                            std::span<const float> areas, std::span<const uint8_t> used,
-                           const PointChooser::State& points, uint64_t seed, uint64_t count)
+                           const PointChooser::State& points, uint64_t seed, uint64_t count,
+                           std::span<const float> seen)
     : surfaces_(surfaces),
       builder_(builder),
       own_(builder.leaves(), 0),
@@ -178,6 +184,13 @@ EntryChooser::EntryChooser(const Surfaces& surfaces, const GroupBuilder& builder
         const double share = total > 0 ? areas[leaf] / total : 0;
         own_[leaf] = static_cast<uint32_t>(std::clamp(std::round(share * static_cast<double>(count)), 1.0,
                                                       static_cast<double>(builder.sides_of(leaf).size())));
+    }
+    if (!seen.empty()) {
+        // Places that rays met are as many different ones; more of them would be the same again.
+        std::vector<uint32_t> limits(met_->met().begin(), met_->met().end());
+        for (uint32_t leaf = 0; leaf < limits.size(); ++leaf)
+            if (limits[leaf] == 0) limits[leaf] = own_[leaf];
+        add_seen(own_, seen, limits, kSeenByLamp * static_cast<double>(count), static_cast<double>(count));
     }
     entries_.first.push_back(0);
 }

@@ -36,10 +36,12 @@ glm::vec3 place_on(const Surfel& disc, uint32_t code);
 /// they are centres of discs, spread by area.
 class EntryChooser {
  public:
-    /// `points`: with their rays, chosen with `seed`. The references must outlive it.
+    /// `points`: with their rays, chosen with `seed`. `seen`: of each leaf, LampViews::seen(); more entry
+    /// points, at most `count`, are where lamps would otherwise see few. Empty: it is not known where lamps
+    /// will be. The references must outlive it.
     EntryChooser(const Surfaces& surfaces, const GroupBuilder& builder, std::span<const float> areas,
                  std::span<const uint8_t> used, const PointChooser::State& points, uint64_t seed,
-                 uint64_t count);
+                 uint64_t count, std::span<const float> seen);
     ~EntryChooser();
     /// Chooses those of some more leaves. Returns whether any are left.
     bool advance();

@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "io/core/log.h"
+
 namespace lucarne::gi::paths {
 namespace {
 
@@ -62,9 +64,16 @@ bool PathBuilder::join_groups() {
 }
 
 bool PathBuilder::make_entries() {
+    if (plan_.lamps && !lamp_views_)
+        lamp_views_.emplace(surfaces_, groups_->leaf_of(), groups_->leaves(), *plan_.lamps);
     if (!entries_) {
-        entries_.emplace(surfaces_, *groups_, paths_.groups.area, links_->used(), chooser_.state(),
-                         plan_.seed, plan_.entries);
+        if (lamp_views_ && lamp_views_->advance()) return true;
+        if (lamp_views_ && std::ranges::all_of(lamp_views_->seen(), [](float seen) { return seen == 0; }))
+            log::warn("lighting_region: no surface is seen from there, so it changes nothing");
+        entries_.emplace(
+            surfaces_, *groups_, paths_.groups.area, links_->used(), chooser_.state(), plan_.seed,
+            plan_.entries,
+            lamp_views_ ? std::span<const float>(lamp_views_->seen()) : std::span<const float>());
         return true;
     }
     if (entries_->advance()) return true;

@@ -7,6 +7,7 @@
 #include "gi/engines/paths/bake.h"
 #include "gi/engines/paths/gathering_points.h"
 #include "gi/engines/paths/groups.h"
+#include "gi/engines/paths/lamp_views.h"
 #include "gi/engines/paths/light_paths.h"
 
 namespace lucarne::gi::paths {
@@ -17,6 +18,7 @@ struct PathPlan {
     uint32_t rays = 0;     ///< of each gathering point
     uint64_t entries = 0;  ///< entry points
     uint64_t seed = 0;
+    std::optional<Bounds> lamps;  ///< where lamps will be, m; empty: anywhere
 };
 
 /// Makes light paths in parts, to be called in this order. Parts that return whether anything is left are
@@ -48,6 +50,7 @@ class PathBuilder {
     std::optional<GroupBuilder> groups_;
     size_t next_connected_ = 0, next_ray_ = 0;  ///< hits: those before are connected, name their groups
     std::optional<LinkBuilder> links_;
+    std::optional<LampViews> lamp_views_;
     std::optional<EntryChooser> entries_;
     size_t next_path_ = 0, last_path_ = 0;  ///< photon paths: the next one, all
     LightPaths paths_;

@@ -19,6 +19,7 @@ using testing::HasSubstr;
 constexpr const char* kWhole = R"({
   "exposure": {"ev": -1.5, "tone_map": "reinhard"},
   "background": [0.1, 0.2, 0.3],
+  "lighting_region": {"min": [500000.25, 0, 0], "max": [500002, 1, 2]},
   "lights": [
     {"type": "spot", "name": "a", "position": [1, 2, 3], "target": [1, 2, 0], "angle": 90, "softness": 0.5, "intensity": [10, 20, 30]},
     {"type": "spot", "position": [500000.25, 5000000.5, 100], "direction": [0, 1, 0], "intensity": [1, 1, 1]}],
@@ -35,6 +36,7 @@ TEST(SceneFile, EveryKeyArrives) {
     EXPECT_EQ(scene->exposure_ev, -1.5);
     EXPECT_EQ(scene->tone_map, ToneMap::reinhard);
     EXPECT_EQ(scene->background, dvec3(.1, .2, .3));
+    EXPECT_EQ(scene->lighting_region, SceneBox(dvec3(500000.25, 0, 0), dvec3(500002, 1, 2)));
     ASSERT_EQ(scene->lights.size(), 2u);
     EXPECT_EQ(scene->lights[0].name, "a");
     EXPECT_EQ(scene->lights[0].position, dvec3(1, 2, 3));
@@ -126,6 +128,7 @@ TEST(SceneFile, EveryMistakeIsReportedWithItsPlace) {
         {R"({"materials": [{"class": 256}]})", "/materials/0/class", "255"},
         {R"({"materials": [{"class": 2.5}]})", "/materials/0/class", "integer"},
         {R"({"materials": [{"scan": -1}]})", "/materials/0/scan", "65535"},
+        {R"({"lighting_region": {"min": [0,0,1], "max": [1,1,0]}})", "/lighting_region/max", "below"},
         {R"({"materials": [{"box": {"min": [0,0,0]}}]})", "/materials/0/box", "max"},
         {R"({"materials": [{"box": {"min": [0,0,1], "max": [1,1,0]}}]})", "/materials/0/box/max", "below"},
         {R"({"materials": [{"box": {"min": [0,0,0], "max": [1,1,1], "mid": 0}}]})", "/materials/0/box/mid",

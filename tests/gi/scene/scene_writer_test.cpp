@@ -118,6 +118,7 @@ class Chance {
     }
     nlohmann::json scene() {
         nlohmann::json scene = nlohmann::json::object();
+        if (coin()) scene["lighting_region"] = {{"min", list(vector(-9, 0))}, {"max", list(vector(0, 9))}};
         for (size_t i = below(5); i > 0; --i) scene["lights"].push_back(light());
         for (size_t i = below(4); i > 0; --i) scene["materials"].push_back(material());
         if (coin()) scene["materials"].push_back({{"diffuse", list(vector(0, 1))}});
