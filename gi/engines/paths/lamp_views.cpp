@@ -11,13 +11,13 @@ namespace lucarne::gi::paths {
 namespace {
 
 constexpr float kAlongLongest = 4;  ///< positions along the longest side of the region
-constexpr uint32_t kDirections = 4096;
-constexpr size_t kPositionsAtOnce = 8, kDirectionsATask = 256;
+constexpr uint32_t kRaysOfLamp = 4096;
+constexpr size_t kPositionsAtOnce = 8, kRaysATask = 256;
 constexpr double kGoldenRatio = 0.6180339887498949;
 
 /// Returns direction `i` of a spherical Fibonacci lattice.
 glm::vec3 even_direction(size_t i) {
-    const double z = 1 - (2.0 * static_cast<double>(i) + 1) / kDirections, sine = std::sqrt(1 - z * z);
+    const double z = 1 - (2.0 * static_cast<double>(i) + 1) / kRaysOfLamp, sine = std::sqrt(1 - z * z);
     const double phi = 2 * M_PI * kGoldenRatio * static_cast<double>(i);
     return {sine * std::cos(phi), sine * std::sin(phi), z};
 }
@@ -42,10 +42,10 @@ LampViews::LampViews(const Surfaces& surfaces, std::span<const uint32_t> leaf_of
 
 bool LampViews::advance() {
     const size_t last = std::min(positions_.size(), next_ + kPositionsAtOnce);
-    std::vector<uint32_t> leaves(kDirections);
+    std::vector<uint32_t> leaves(kRaysOfLamp);
     for (; next_ < last; ++next_) {
         const glm::vec3& from = positions_[next_];
-        parallel_ranges(kDirections, kDirectionsATask, [&](size_t begin, size_t end) {
+        parallel_ranges(kRaysOfLamp, kRaysATask, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
                 const glm::vec3 direction = even_direction(i);
                 const auto hit = surfaces_.tracer().first_hit(from, direction);
@@ -53,11 +53,11 @@ bool LampViews::advance() {
             }
         });
         std::ranges::sort(leaves);
-        for (size_t first = 0; first < kDirections && leaves[first] != kNone;) {
+        for (size_t first = 0; first < kRaysOfLamp && leaves[first] != kNone;) {
             size_t end = first + 1;
-            while (end < kDirections && leaves[end] == leaves[first]) ++end;
+            while (end < kRaysOfLamp && leaves[end] == leaves[first]) ++end;
             float& most = seen_[leaves[first]];
-            most = std::max(most, static_cast<float>(end - first) / kDirections);
+            most = std::max(most, static_cast<float>(end - first) / kRaysOfLamp);
             first = end;
         }
     }

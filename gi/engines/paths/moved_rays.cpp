@@ -30,6 +30,9 @@ float light_there(float sum, float times, float here) {
     const float rest = met * mean + (1 - met) * std::min(mean, here);
     return std::max(sum + rest * (1 - times), 0.0f);
 }
+/// How far from walls light is looked for at least, in radii of surfels: pixels in the corner of two walls
+/// are that near.
+constexpr float kClear = 0.5f;
 /// Rays that are kept, of 32 bytes each: 64 MB.
 constexpr size_t kMostRays = size_t{1} << 21;
 constexpr size_t kPointsATask = 256;
@@ -121,8 +124,26 @@ const MovedRays::Rays& MovedRays::rays_of(uint32_t point, Rays& own) const {
     return own;
 }
 
-float MovedRays::factor(const glm::vec3& at, const glm::vec3& normal,
+/// Returns `at`, or a place kClear radii before the planes of walls that stand on the surface about these
+/// points, if it is nearer to them: of a wall in whose plane a place lies no ray brings it anything.
+glm::vec3 MovedRays::clear_of_walls(const glm::vec3& at, std::span<const PointShare> about) const {
+    glm::vec3 place = at;
+    for (const PointShare& share : about) {
+        const GatheringPoint& point = bake_->paths.points[share.point];
+        for (const glm::vec3& plane : point.walls.planes) {
+            const float steepness = glm::length(plane);
+            if (!(steepness > 0)) continue;
+            const float before = (1 - glm::dot(plane, place - point.position)) / steepness;
+            const float wanted = kClear * point.radius;
+            if (before < wanted && before > -wanted) place -= plane * ((wanted - before) / steepness);
+        }
+    }
+    return place;
+}
+
+float MovedRays::factor(const glm::vec3& place, const glm::vec3& normal,
                         std::span<const PointShare> about) const {
+    const glm::vec3 at = clear_of_walls(place, about);
     const auto count = static_cast<float>(bake_->paths.rays_a_point);
     float there = 0, here = 0;
     Rays own;

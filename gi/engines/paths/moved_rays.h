@@ -37,6 +37,7 @@ class MovedRays {
         float light = 0;  ///< mean luminance of the radiosities that they meet, W/m^2
     };
     std::span<const uint32_t> groups_of(uint32_t point) const;
+    glm::vec3 clear_of_walls(const glm::vec3& at, std::span<const PointShare> about) const;
     void make(uint32_t point, Rays& rays) const;
     void set_light(uint32_t point, Rays& rays) const;
     const Rays& rays_of(uint32_t point, Rays& own) const;

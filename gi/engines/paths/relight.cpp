@@ -1,6 +1,7 @@
 #include "gi/engines/paths/relight.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -147,43 +148,54 @@ void Relight::follow_links(const std::vector<glm::vec3>& from, std::vector<glm::
 
 void Relight::make_photon_index() {
     const LightPaths& paths = bake_->paths;
+    const Links& links = paths.links;
     const size_t count = bake_->entries.size();
+    areas_.assign(links.origins(), 0);
+    for (size_t leaf = 0; leaf < paths.groups.leaves; ++leaf)
+        if (links.origin_of[leaf] != kNone) areas_[links.origin_of[leaf]] += paths.groups.area[leaf];
     index_.resize(kVertices - 1);
     for (uint32_t vertex = 0; vertex + 1 < kVertices; ++vertex) {
-        const auto leaf_of = [&](size_t entry) { return paths.photons[entry * (kVertices - 1) + vertex]; };
+        const auto origin_of = [&](size_t entry) {
+            const uint32_t leaf = paths.photons[entry * (kVertices - 1) + vertex];
+            return leaf == kNone ? kNone : links.origin_of[leaf];
+        };
         PhotonIndex& index = index_[vertex];
-        index.first.assign(paths.groups.leaves + 1, 0);
+        index.first.assign(links.origins() + 1, 0);
         for (size_t i = 0; i < count; ++i)
-            if (leaf_of(i) != kNone) ++index.first[leaf_of(i) + 1];
-        for (size_t leaf = 0; leaf < paths.groups.leaves; ++leaf) index.first[leaf + 1] += index.first[leaf];
+            if (origin_of(i) != kNone) ++index.first[origin_of(i) + 1];
+        std::partial_sum(index.first.begin(), index.first.end(), index.first.begin());
         index.entries.resize(index.first.back());
         std::vector<uint32_t> next = index.first;
         for (size_t i = 0; i < count; ++i)
-            if (leaf_of(i) != kNone) index.entries[next[leaf_of(i)]++] = static_cast<uint32_t>(i);
+            if (origin_of(i) != kNone) index.entries[next[origin_of(i)]++] = static_cast<uint32_t>(i);
     }
 }
 
-/// Reflects every photon at this vertex of its path, from 1, and sets the radiosity of the leaves: the sum of
-/// the photons' energies over the area (Yue et al. 2007, section 6.2, without bins of directions, since
-/// light leaves evenly).
+/// Reflects every photon at this vertex of its path, from 1, and sets the radiosity of the leaves by the sum
+/// of the photons' energies over the area (Yue et al. 2007, section 6.2, without bins of directions, since
+/// light leaves evenly). Photons and area are those of the groups from which links start: rims of discs that
+/// stick out are leaves with less area than rays meet, and would look too bright to the same rays.
 void Relight::follow_photons(uint32_t vertex, std::vector<glm::vec3>& to) {
     const LightPaths& paths = bake_->paths;
     if (index_.empty()) make_photon_index();
+    const PhotonIndex& index = index_[vertex - 1];
+    std::vector<glm::vec3> arriving(areas_.size(), glm::vec3(0.0f));
+    parallel_ranges(arriving.size(), kGroupsATask, [&](size_t begin, size_t end) {
+        for (size_t origin = begin; origin < end; ++origin) {
+            if (!(areas_[origin] > 0)) continue;
+            for (uint32_t i = index.first[origin]; i < index.first[origin + 1]; ++i)
+                arriving[origin] += energies_[index.entries[i]];
+            arriving[origin] /= areas_[origin];
+        }
+    });
+    to.assign(paths.groups.leaves, glm::vec3(0.0f));
+    for (size_t leaf = 0; leaf < to.size(); ++leaf)
+        if (const uint32_t origin = paths.links.origin_of[leaf]; origin != kNone)
+            to[leaf] = reflectances_[leaf] * arriving[origin];
     parallel_ranges(energies_.size(), kEntriesATask, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const uint32_t leaf = paths.photons[i * (kVertices - 1) + vertex - 1];
             energies_[i] = leaf == kNone ? glm::vec3(0.0f) : energies_[i] * reflectances_[leaf];
-        }
-    });
-    const PhotonIndex& index = index_[vertex - 1];
-    to.assign(paths.groups.leaves, glm::vec3(0.0f));
-    parallel_ranges(paths.groups.leaves, kGroupsATask, [&](size_t begin, size_t end) {
-        for (size_t leaf = begin; leaf < end; ++leaf) {
-            if (!(paths.groups.area[leaf] > 0)) continue;
-            glm::vec3 sum(0.0f);
-            for (uint32_t i = index.first[leaf]; i < index.first[leaf + 1]; ++i)
-                sum += energies_[index.entries[i]];
-            to[leaf] = sum / paths.groups.area[leaf];
         }
     });
 }

@@ -65,12 +65,13 @@ class Relight {
     std::vector<glm::vec3> by_lobes_;      ///< their part of first_
     std::vector<glm::vec3> lobe_light_;    ///< of each gathering ray
     std::vector<glm::vec3> sum_;           ///< radiosity of each group
-    /// The photons of each leaf (the photon index map of the paper): for each vertex after the first, where
-    /// those of each leaf begin, and the numbers of their entry points.
+    /// The photons of each group from which links start (the photon index map of the paper): for each vertex
+    /// after the first, where those of each begin, and the numbers of their entry points.
     struct PhotonIndex {
         std::vector<uint32_t> first, entries;
     };
     std::vector<PhotonIndex> index_;
+    std::vector<float> areas_;  ///< of these groups, m^2
 };
 
 }  // namespace lucarne::gi::paths

@@ -75,6 +75,8 @@ TEST_F(PathsCommand, EditsRepeatOnlyWhatDependsOnThemAndEqualAFreshPreparation) 
         std::ofstream(scene()) << text;
         expect_like_fresh({text.c_str(), "", false});
     }
+    std::ofstream(scene()) << scene_text(1.5, R"(, "lighting_region": {"min": [2, 2, 4], "max": [3, 3, 5]})");
+    expect_like_fresh({"where lamps will be", "", true});
 }
 
 TEST_F(PathsCommand, PreparesOnceAndSaysWhatItKeeps) {

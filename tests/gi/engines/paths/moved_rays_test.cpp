@@ -118,5 +118,39 @@ TEST_F(MovedRaysInARoom, OfTheRimOfADiscBehindAWallStartBeforeTheWall) {
     EXPECT_LT(before, .1 * places) << "the light of a place 1 cm beside the wall";
 }
 
+// Of a wall in whose plane a place lies rays bring nothing: in the corner they brought .05 of the light of a
+// wall that alone is lit. Now it is .38; what is nearer to the wall than rays are to each other is missing.
+TEST_F(MovedRaysInARoom, InTheCornerOfTwoWallsBringTheLightOfBoth) {
+    std::vector<glm::vec3> light(bake_->paths.groups.count(), glm::vec3(0.0f));
+    for (size_t i = 0; i < light.size(); ++i)
+        if (bake_->planes[i].normal.x > .9f) light[i] = glm::vec3(1.0f);
+    MovedRays moved(bake_);
+    moved.set(light);
+    const LightPaths& paths = bake_->paths;
+    std::vector<glm::vec3> irradiance(paths.points.size(), glm::vec3(0.0f));
+    for (size_t i = 0; i < paths.rays.size(); ++i)
+        if (paths.rays[i] != kNone)
+            irradiance[i / paths.rays_a_point] += light[paths.rays[i]] / float(paths.rays_a_point);
+    PointFinder finder(*bake_);
+    double sum = 0, places = 0;
+    for (const float x : {0.0f, .0005f, .001f})
+        for (float y = .2f; y < .8f; y += .05f) {
+            const Surfel floor{.position = {x, y, 0}, .normal = kZ};
+            ASSERT_TRUE(finder.find(floor.position, floor.normal));
+            sum += irradiance_of(finder.shares(), irradiance).x * factor(moved, floor, finder.shares());
+            ++places;
+        }
+    // It sees half of its hemisphere as the wall, but for what is beside and above that.
+    double exact = 0;
+    for (const Surfel& s : surfels_) {
+        if (s.normal.x < .9f) continue;
+        const glm::vec3 away = s.position - glm::vec3(.02f, .5f, 0);
+        const float distance2 = glm::dot(away, away);
+        exact += away.z * std::max(-glm::dot(away, s.normal), 0.0f) * s.area / (kPi * distance2 * distance2);
+    }
+    EXPECT_GT(sum / places, .3 * exact);
+    EXPECT_LT(sum / places, 1.1 * exact);
+}
+
 }  // namespace
 }  // namespace lucarne::gi::paths
