@@ -36,6 +36,7 @@ namespace lucarne::bench {
 class CellScene {
  public:
     static constexpr uint32_t kRays = 256;
+    static constexpr uint64_t kSeed = 1;
     /// Rays of a point that tell its true light.
     static constexpr uint32_t kTrueRays = 4096;
 
@@ -136,10 +137,6 @@ class CellScene {
         });
     }
 
- public:
-    static constexpr uint64_t kSeed = 1;
-
- private:
     gi::paths::Surfaces surfaces_;
     std::vector<gi::Light> lights_;
     std::unique_ptr<gi::paths::PointChooser> chooser_;
@@ -203,7 +200,10 @@ struct GatherErrors {
         }
         const auto points = static_cast<double>(found.size());
         for (size_t i = 0; i < found.size(); ++i)
-            if (scene.truth()[i] < 1e-3 * truth / points) dark += found[i], ++count;
+            if (scene.truth()[i] < 1e-3 * truth / points) {
+                dark += found[i];
+                ++count;
+            }
         energy = sum / truth - 1;
         rms = std::sqrt(squares * points) / truth;
         leak = count > 0 ? dark / count / (truth / points) : NAN;

@@ -27,12 +27,12 @@ glm::vec3 even_direction(size_t i) {
 std::vector<glm::vec3> lamp_positions(const Bounds& region) {
     const glm::vec3 size = region.max - region.min;
     const float longest = std::max({size.x, size.y, size.z, 1e-6f});
-    const glm::vec3 counts = glm::max(glm::round(kAlongLongest * size / longest), 1.0f);
+    const glm::ivec3 counts = glm::max(glm::ivec3(glm::round(kAlongLongest * size / longest)), 1);
     std::vector<glm::vec3> positions;
-    for (float z = 0; z < counts.z; ++z)
-        for (float y = 0; y < counts.y; ++y)
-            for (float x = 0; x < counts.x; ++x)
-                positions.push_back(region.min + (glm::vec3(x, y, z) + .5f) / counts * size);
+    for (int z = 0; z < counts.z; ++z)
+        for (int y = 0; y < counts.y; ++y)
+            for (int x = 0; x < counts.x; ++x)
+                positions.push_back(region.min + (glm::vec3(x, y, z) + .5f) / glm::vec3(counts) * size);
     return positions;
 }
 
