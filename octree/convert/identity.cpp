@@ -12,7 +12,9 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kHeadBytes = 64 << 10;
-constexpr int kRecords = 8;  ///< version of the stages' records (save and restore); raise it with any change
+/// Version of the stages' records (save and restore). Raise it with any change, also of what is estimated: a
+/// conversion that goes on must not mix borders of two kinds.
+constexpr int kRecords = 9;
 
 /// Empty for sources that are not files.
 std::string file_identity(const std::filesystem::path& path) {
