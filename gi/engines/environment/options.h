@@ -28,7 +28,7 @@ inline constexpr Option<bool> kGlossyCaches{{
     .help = "Let surfaces with a shininess of up to 28 reflect the light of caches, which is blurred by 12 "
             "degrees; else, and if they shine more, they gather by themselves. While the camera moves all "
             "reflect it",
-    .cost = "half the time of glossy scenes, for softer reflections",
+    .cost = "a third less time for glossy scenes, and softer reflections",
     .defaults = {true, true, false},
     .cheaper = 1,
 }};
