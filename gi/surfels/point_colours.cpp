@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 
 #include "gi/shared/surfel_code.h"
+#include "octree/colours/even_colours.h"
 
 namespace lucarne::gi {
 namespace {
@@ -60,6 +61,9 @@ PointColours::PointColours(const octree::SourceHeader& header, const octree::Cub
         filled = !all_zero(&data.records[at], color->bytes());
     if (!filled) return;
     color_ = color;
+    const auto* change = header.schema.find(io::names::color_change);
+    const bool known = change && change->type == io::ScalarType::i8 && change->components == 3;
+    if (balanced && known) change_ = change;
     if (fill) mark_black_cells();
 }
 
@@ -115,8 +119,16 @@ glm::dvec3 PointColours::raw(const std::byte* record) const {
             io::scalar_at(color_->type, at + 2 * step)};
 }
 
-glm::dvec3 PointColours::balanced(const glm::dvec3& raw, const Station& station) const {
+glm::dvec3 PointColours::balanced(const std::byte* record, const glm::dvec3& raw,
+                                  const Station& station) const {
     glm::dvec3 srgb = raw / station.white;
+    if (change_) {
+        const auto change = io::load<octree::ColourChange>(record + change_->offset);
+        if (change != octree::ColourChange{})
+            for (int c = 0; c < 3; ++c)
+                srgb[c] = std::clamp(
+                    srgb[c] + double{change[static_cast<size_t>(c)]} / octree::kColourChangeSteps, 0.0, 1.0);
+    }
     if (!station.curves) return srgb;
     for (int c = 0; c < 3; ++c) {
         const auto& curve = (*station.curves)[static_cast<size_t>(c)];
@@ -141,7 +153,7 @@ std::optional<glm::dvec3> PointColours::of(const std::byte* record, const glm::d
     if (never_photographed(colour, position, station))
         return colour_around(position,
                              glm::min(*station.colour->unphotographed * station.colour->gain, glm::dvec3(1)));
-    return balanced(colour, station);
+    return balanced(record, colour, station);
 }
 
 void PointColours::sum_up_cells() {
@@ -154,7 +166,7 @@ void PointColours::sum_up_cells() {
         const glm::dvec3 position = io::position_of(header_.schema, record);
         if (never_photographed(colour, position, station)) continue;
         glm::vec4 sum(0, 0, 0, 1);
-        const glm::dvec3 srgb = balanced(colour, station);
+        const glm::dvec3 srgb = balanced(record, colour, station);
         for (int c = 0; c < 3; ++c) sum[c] = nearly_linear(srgb[c]);
         cells_[0][cell_of(position, cube_, kCells)] += sum;
     }

@@ -13,9 +13,9 @@
 
 namespace lucarne::gi {
 
-/// The colours of a node's points, as sRGB from 0 to 1. If they are balanced, the gains of the stations are
-/// applied, and points that were never photographed get the colour of the points around them
-/// (octree/tree/station_colour.h).
+/// The colours of a node's points, as sRGB from 0 to 1. If they are balanced, random differences are evened
+/// out (octree/colours/even_colours.h), the gains of the stations are applied, and points that were never
+/// photographed get the colour of the points around them (octree/tree/station_colour.h).
 class PointColours {
  public:
     /// The arguments outlive this object.
@@ -37,7 +37,7 @@ class PointColours {
     const Station& station_of(const std::byte* record);
     const Curves* curves_of(const octree::StationColour& colour);
     glm::dvec3 raw(const std::byte* record) const;
-    glm::dvec3 balanced(const glm::dvec3& raw, const Station& station) const;
+    glm::dvec3 balanced(const std::byte* record, const glm::dvec3& raw, const Station& station) const;
     bool never_photographed(const glm::dvec3& raw, const glm::dvec3& position, const Station& station) const;
     void mark_black_cells();
     glm::dvec3 colour_around(const glm::dvec3& position, const glm::dvec3& otherwise);
@@ -48,7 +48,7 @@ class PointColours {
     const octree::NodeData& data_;
     const octree::StationKeys keys_;
     bool balanced_;
-    const io::Attribute* color_ = nullptr;
+    const io::Attribute *color_ = nullptr, *change_ = nullptr;  ///< null: points have none
     std::optional<Station> last_;
     std::map<const octree::StationColour*, std::unique_ptr<const Curves>> curves_;
     std::vector<bool> black_;  ///< which of 16^3 cells have points that are 0,0,0 and should not be

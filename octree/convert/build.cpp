@@ -333,12 +333,12 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
     LUCARNE_TRY(check_units(inputs));
     warn_of_differences(inputs);
     LUCARNE_TRY(check_descriptions(inputs));
-    const auto added_bytes = [](std::optional<bool> normals) -> uint32_t {
-        return normals ? (*normals ? 7 : 4) : 0;  // normal_oct, area and edge_line
+    const auto stride_with = [&](std::optional<bool> normals) {
+        return (normals ? with_estimates(inputs.schema(), *normals) : inputs.schema()).stride;
     };
     // The most that may have to be estimated; only the scan tells whether every point has its own normal.
     LUCARNE_ASSIGN(const auto most, wanted_normals(options.normals, inputs, false));
-    const uint32_t widest = inputs.schema().stride + added_bytes(most);
+    const uint32_t widest = stride_with(most);
     const MemoryPlan::Work need{widest, NodeLimits(widest).leaf, most.has_value(), threads};
     LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, need));
 
@@ -366,7 +366,7 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
     report.estimated_stations = facts.stations.size();
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs, facts.without_normal == 0));
     if (normals && !*normals) LUCARNE_TRY(check_kept_normals(options, facts));
-    const NodeLimits limits(inputs.schema().stride + added_bytes(normals));
+    const NodeLimits limits(stride_with(normals));
     SourceHeader bare = header_of(inputs, facts, inputs.schema());
     bare.options = options.read_options;
     for (const auto* input : options.inputs) warn_of_assumed_unit(input->info(), bare.metres_per_unit);
@@ -397,7 +397,7 @@ Result<BuildReport> build(const BuildOptions& options, Held& held) {
                      facts.stations, [&](uint64_t points) { return steps.add(points); }, ranks, folder});
             }));
     }
-    const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false));
+    const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false), bare.scans);
     std::optional<CacheWriter> alone;
     if (!ranks) {
         LUCARNE_ASSIGN(alone, CacheWriter::create(options.output, options.overwrite, folder));

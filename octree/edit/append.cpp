@@ -30,8 +30,7 @@ class CacheSchema final : public io::PointSource {
         schema_.offset = from.offset;
         schema_.stride = static_cast<uint32_t>(io::position_bytes(from.position));
         for (const auto& a : from.attributes)
-            if (a.name != io::names::scan && a.name != io::names::normal_oct && a.name != io::names::area &&
-                a.name != io::names::edge_line)
+            if (a.name != io::names::scan && !is_estimate(a.name))
                 schema_.add(name_in_file(a.name), a.type, a.components);
         info_.path = cache.file().path().string();
     }
@@ -58,7 +57,7 @@ io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache, size_t s
     schema.stride = static_cast<uint32_t>(io::position_bytes(schema.position));
     for (const auto& a : inputs.schema().attributes)
         schema.add(a.name, wide && a.name == io::names::scan ? io::ScalarType::u32 : a.type, a.components);
-    for (const auto name : {io::names::normal_oct, io::names::area, io::names::edge_line})
+    for (const auto name : kEstimates)
         if (const auto* added = cache.find(name)) schema.add(added->name, added->type, added->components);
     return schema;
 }

@@ -363,7 +363,7 @@ Result<Subtree> Rewrite::kept_subtree(const RecordLoader& loader, size_t item) c
 /// Makes the nodes of some pieces. `next`: the root of the piece after them, null at the end.
 Result<void> Rewrite::make_nodes(std::span<const Piece> pieces, const RecordLoader& loader,
                                  const NodeKey* next, CacheWriter& writer, Assembler& assembler) {
-    const RecordLoader same(*kept_, nullptr, false);
+    const RecordLoader same(*kept_, nullptr, false, {});
     const size_t first_kept = first_kept_[ranks_.rank()];
     Progress progress("building", own_points_, "points");
     const auto make = [&](size_t i) {
@@ -385,7 +385,7 @@ Result<void> Rewrite::write_nodes(CacheWriter* writer) {
     std::vector<NodeKey> chunks;
     for (const auto& chunk : rebuilt_->chunks()) chunks.push_back(chunk.key);
     const auto pieces = in_morton_order(chunks, keys_of(plan_.kept));
-    const RecordLoader loader(*rebuilt_, surface_ ? &*surface_ : nullptr, false);
+    const RecordLoader loader(*rebuilt_, surface_ ? &*surface_ : nullptr, false, change_.header.scans);
     if (!shared()) {
         LUCARNE_ASSIGN(Assembler assembler, Assembler::create(*writer, loader, limits_, folder_));
         return make_nodes(pieces, loader, nullptr, *writer, assembler);

@@ -67,9 +67,7 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
     schema_.stride = static_cast<uint32_t>(io::position_bytes(schema_.position));
     if (!(options.precision > 0)) copies_.push_back({0, 0, schema_.stride});
     for (const auto& attribute : header.schema.attributes) {
-        if (attribute.name == io::names::normal_oct || attribute.name == io::names::area ||
-            attribute.name == io::names::edge_line)
-            continue;
+        if (is_estimate(attribute.name)) continue;
         const bool keeps = taken(reserved_name(attribute.name));
         const std::string name = keeps ? attribute.name : name_in_file(attribute.name);
         if (!chosen(name)) continue;

@@ -1,5 +1,7 @@
 #include "octree/tree/stored_names.h"
 
+#include <algorithm>
+
 namespace lucarne::octree {
 namespace {
 
@@ -10,16 +12,18 @@ bool has_normal_shape(const io::Attribute& attribute) {
 
 }  // namespace
 
+bool is_estimate(std::string_view name) {
+    return std::ranges::find(kEstimates, name) != kEstimates.end();
+}
+
 bool is_normal(const io::Attribute& attribute) {
     return attribute.name == io::names::normal && has_normal_shape(attribute);
 }
 
 std::string_view reserved_name(std::string_view name) {
     while (name.ends_with(kForeign)) name.remove_suffix(kForeign.size());
-    for (const auto ours :
-         {io::names::normal_oct, io::names::area, io::names::edge_line, io::names::scan, io::names::normal})
-        if (name == ours) return name;
-    return {};
+    const bool ours = is_estimate(name) || name == io::names::scan || name == io::names::normal;
+    return ours ? name : std::string_view();
 }
 
 std::string stored_name(const io::Attribute& attribute, bool replace_normals) {

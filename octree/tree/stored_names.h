@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -11,11 +12,16 @@ namespace lucarne::octree {
 inline constexpr std::string_view kForeign = "_in_file";
 inline constexpr std::string_view kReplacedNormals = "normal_in_file";
 
+/// The attributes that a build adds to what its inputs have.
+inline constexpr std::array kEstimates = {io::names::normal_oct, io::names::area, io::names::edge_line,
+                                          io::names::color_change};
+bool is_estimate(std::string_view name);
+
 /// Whether an attribute holds normals: three floats or doubles called `normal`.
 bool is_normal(const io::Attribute& attribute);
 
-/// Returns the name under which a cache stores an input's attribute. Reserved are `normal_oct`, `area`,
-/// `edge_line` and `scan`; `normal` is reserved too if the attribute is not a normal or if `replace_normals`
+/// Returns the name under which a cache stores an input's attribute. Reserved are kEstimates and
+/// `scan`; `normal` is reserved too if the attribute is not a normal or if `replace_normals`
 /// is set. Reserved names get the suffix, and so do those that have it already, so that different names stay
 /// different.
 std::string stored_name(const io::Attribute& attribute, bool replace_normals);

@@ -11,6 +11,7 @@
 #include "gi/scene/colour_map.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/scan_number.h"
+#include "octree/tree/stored_names.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -122,8 +123,9 @@ std::optional<PointField> field_of(const octree::SourceHeader& header, const io:
                                    const std::byte* record) {
     const std::byte* at = record + attribute.offset;
     const bool bytes = attribute.type == io::ScalarType::u8;
-    if (attribute.name == io::names::area || attribute.name == io::names::edge_line) return std::nullopt;
-    if (attribute.name == io::names::normal_oct && bytes && attribute.components == 3) {
+    const bool estimated_normal = attribute.name == io::names::normal_oct;
+    if (octree::is_estimate(attribute.name) && !estimated_normal) return std::nullopt;
+    if (estimated_normal && bytes && attribute.components == 3) {
         const auto normal = octree::decode_normal(io::load<octree::NormalCode>(at));
         if (!normal) return PointField{std::string(kEstimatedNormal), "none"};
         return PointField{std::string(kEstimatedNormal),

@@ -236,7 +236,7 @@ void albedo(const Rendering& model) {
     tell_cost(
         "colour of the light in which the points were photographed, which is divided out of their colours.\n"
         "All points are sent to the device again");
-    if (ImGui::Checkbox("Balance stations", &albedo.balance)) model.view.scene_changed();
+    if (ImGui::Checkbox("Balance colours", &albedo.balance)) model.view.scene_changed();
     tell_cost(
         "gains that the conversion found make stations of different exposure agree, and points that were\n"
         "never photographed get the colour around them. All points are sent to the device again");

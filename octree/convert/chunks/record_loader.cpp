@@ -17,10 +17,14 @@ io::Schema with_estimates(io::Schema schema, bool normals) {
     if (normals) schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
     schema.add(std::string(io::names::area), io::ScalarType::u16);
     schema.add(std::string(io::names::edge_line), io::ScalarType::u8, 2);
+    const io::Attribute* color = schema.find(io::names::color);
+    if (color && color->components == 3)
+        schema.add(std::string(io::names::color_change), io::ScalarType::i8, 3);
     return schema;
 }
 
-RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals)
+RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals,
+                           std::span<const io::ScanInfo> scans)
     : chunks_(chunks),
       surface_(surface),
       schema_(surface && !chunks.schema().find(io::names::area)
@@ -30,7 +34,10 @@ RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface
       drawn_normals_(schema_),
       normal_(schema_.find(io::names::normal_oct)),
       area_(schema_.find(io::names::area)),
-      edge_(schema_.find(io::names::edge_line)) {}
+      edge_(schema_.find(io::names::edge_line)) {
+    if (surface)
+        for (const io::ScanInfo& scan : scans) whites_.push_back(io::color_white(scan.color_bits));
+}
 
 PointEdge RecordLoader::drawn_edge(const SurfaceStore::Point& found, const std::byte* record) const {
     PointEdge edge = found.edge;

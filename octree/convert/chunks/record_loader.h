@@ -8,7 +8,8 @@
 
 namespace lucarne::octree {
 
-/// Adds the estimated attributes to the input's schema: areas, lines at edges and, if `normals`, normals.
+/// Adds the estimated attributes to the input's schema: areas, lines at edges, if `normals`, normals, and if
+/// there are colours, the changes that even them out.
 io::Schema with_estimates(io::Schema schema, bool normals);
 
 /// Loads the records of chunks as the cache will store them: the input's, followed by the estimates. In an
@@ -17,12 +18,15 @@ io::Schema with_estimates(io::Schema schema, bool normals);
 class RecordLoader {
  public:
     /// `surface` is null if neither normals nor areas were estimated. `normals`: whether its normals are
-    /// wanted.
-    RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals);
+    /// wanted. `scans`: the inputs, by their number.
+    RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals,
+                 std::span<const io::ScanInfo> scans);
 
     const io::Schema& schema() const { return schema_; }
     const Cube& root() const { return chunks_.root(); }
     std::span<const Chunk> chunks() const { return chunks_.chunks(); }
+    /// The value of a colour's component at full intensity, of each input; empty if nothing was estimated.
+    std::span<const double> whites() const { return whites_; }
     Result<std::vector<std::byte>> load(size_t chunk, uint64_t first, uint64_t count) const;
 
     Place place(const std::byte* record) const { return root().place(io::position_of(schema_, record)); }
@@ -38,6 +42,7 @@ class RecordLoader {
     const ChunkStore& chunks_;
     const SurfaceStore* surface_;
     io::Schema schema_;
+    std::vector<double> whites_;
     SplatSurface splats_;
     PointNormals drawn_normals_;
     const io::Attribute *normal_ = nullptr, *area_ = nullptr, *edge_ = nullptr;

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "octree/colours/even_colours.h"
 #include "octree/tree/radix_sort.h"
 
 namespace lucarne::octree {
@@ -69,6 +70,10 @@ Result<void> Builder::load(size_t index, uint64_t count) {
         places_[i] = loader_.place(to);
         areas_[i] = loader_.area(to);
     }
+    if (!loader_.whites().empty())
+        ColourEvening(loader_.schema(), loader_.whites(),
+                      static_cast<float>(std::exp2(-2.0 * static_cast<double>(loader_.root().doublings))))
+            .even(records_, places_, areas_);
     return {};
 }
 

@@ -7,6 +7,7 @@
 #include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/surfel_pool.h"
+#include "octree/colours/even_colours.h"
 
 namespace lucarne::gi {
 namespace {
@@ -67,6 +68,18 @@ TEST(PointColours, AStationsGainMultipliesItsLinearColours) {
     expect_near(colours[2], own);
     expect_near(colours[3], {1, 0.5, 0});
     for (size_t i = 0; i < 3; ++i) expect_near(node.colours(false)[i], own);
+}
+
+TEST(PointColours, ChangesEvenColoursOutBeforeGains) {
+    Node node;
+    node.header.schema.add("color_change", io::ScalarType::i8, 3);
+    node.header.station_colours = {{0, 1, {2, 2, 2}, {}}};
+    node.add({1, 1, 1}, {51, 102, 250});
+    io::store(&node.data.records[29], octree::ColourChange{25, -25, 127});
+    const auto changed = node.colours();
+    expect_near(changed[0],
+                {2 * srgb_to_linear(0.2f + 25 / 127.0f), 2 * srgb_to_linear(0.4f - 25 / 127.0f), 1});
+    expect_near(node.colours(false)[0], linear(51, 102, 250));
 }
 
 TEST(PointColours, TheLightOfTheScanIsDividedOutOfColoursThatPointsHave) {

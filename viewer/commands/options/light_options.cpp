@@ -41,7 +41,8 @@ void add_light_options(Arguments& command, LightOptions& options) {
         .range(0.0, 1.0)
         .type_name("X");
     command.flag("--unbalanced", options.unbalanced,
-                 "Keep the stations' different exposures, and points that were never photographed black");
+                 "Keep colours as they were recorded: stations' different exposures, random differences of "
+                 "neighbouring points, and points that were never photographed black");
     command.add("--beside", options.compare, "Show this engine beside the picture's own (.png)")
         .type_name("ENGINE");
     command

@@ -22,8 +22,8 @@ std::vector<std::string> columns_of(const octree::NodeSource& source) {
     std::vector<std::string> names;
     for (const uint32_t root : source.roots())
         for (const io::Attribute& attribute : source.part_of(root).header.schema.attributes) {
-            if (attribute.name == io::names::area || attribute.name == io::names::edge_line) continue;
             const bool estimated = attribute.name == io::names::normal_oct;
+            if (octree::is_estimate(attribute.name) && !estimated) continue;
             if (estimated && !octree::replaces_normals(source.part_of(root).header.schema)) continue;
             const std::string name = estimated ? std::string(kEstimatedNormal) : attribute.name;
             if (std::ranges::find(names, name) == names.end()) names.push_back(name);

@@ -1,0 +1,249 @@
+#include "octree/colours/even_colours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "io/core/random.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr int kSide = 128;          ///< points along the wall
+constexpr float kSpacing = 0.001f;  ///< edges of the root cube
+
+/// A wall of points with their colours, along the Morton curve.
+template <class T>
+struct Wall {
+    using Paint = std::function<std::array<T, 3>(int x, int y)>;
+
+    explicit Wall(io::ScalarType type, const Paint& paint, T full) : white(full) {
+        schema.add(std::string(io::names::color), type, 3);
+        schema.add(std::string(io::names::normal), io::ScalarType::f32, 3);
+        schema.add(std::string(io::names::point_source_id), io::ScalarType::u16);
+        schema.add(std::string(io::names::color_change), io::ScalarType::i8, 3);
+        struct Point {
+            Place place;
+            int x, y;
+        };
+        std::vector<Point> points;
+        const auto lattice = [](double place) { return static_cast<uint32_t>(std::ldexp(place, 32)); };
+        Random random(7);
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const auto at = [&](int i) {
+                    return 0.25 + double{kSpacing} * (i + 0.6 * (random.uniform() - 0.5));
+                };
+                points.push_back({{lattice(at(x)), lattice(at(y)), lattice(0.5)}, x, y});
+            }
+        std::ranges::sort(points, {}, [](const Point& point) { return point.place.code(); });
+        for (const Point& point : points) {
+            places.push_back(point.place);
+            records.resize(records.size() + schema.stride);
+            std::byte* record = &records[records.size() - schema.stride];
+            io::store(record + offset(io::names::color), paint(point.x, point.y));
+            io::store(record + offset(io::names::normal), std::array<float, 3>{0, 0, 1});
+        }
+        areas.assign(places.size(), kSpacing * kSpacing);
+    }
+    uint32_t offset(std::string_view name) const { return schema.find(name)->offset; }
+    std::byte* record(size_t i) { return &records[i * schema.stride]; }
+    void even() {
+        const std::array<double, 1> whites = {static_cast<double>(white)};
+        ColourEvening(schema, whites).even(records, places, areas);
+    }
+    ColourChange change(size_t i) {
+        return io::load<ColourChange>(record(i) + offset(io::names::color_change));
+    }
+    /// The component of a point as it is drawn, from 0 to 1.
+    double drawn(size_t i, size_t component = 1) {
+        const auto color = io::load<std::array<T, 3>>(record(i) + offset(io::names::color));
+        return static_cast<double>(color[component]) / static_cast<double>(white) +
+               static_cast<double>(change(i)[component]) / double{kColourChangeSteps};
+    }
+    size_t changed(int least = 1) {
+        size_t sum = 0;
+        for (size_t i = 0; i < places.size(); ++i)
+            sum += std::ranges::any_of(change(i), [&](int8_t step) { return std::abs(int{step}) >= least; });
+        return sum;
+    }
+
+    io::Schema schema;
+    T white;
+    std::vector<std::byte> records;
+    std::vector<Place> places;
+    std::vector<float> areas;
+};
+using Bytes = std::array<uint8_t, 3>;
+using ByteWall = Wall<uint8_t>;
+
+struct Spread {
+    double mean = 0, deviation = 0;
+};
+template <class T>
+Spread spread(Wall<T>& wall) {
+    double sum = 0, sum2 = 0, count = 0;
+    for (size_t i = 0; i < wall.places.size(); ++i) {
+        const double value = wall.drawn(i);
+        sum += value, sum2 += value * value, ++count;
+    }
+    return {sum / count, std::sqrt(sum2 / count - sum * sum / count / count)};
+}
+
+TEST(EvenColours, PointsOfTwoExposuresGetTheirMean) {
+    for (const double part : {0.5, 0.1}) {
+        Random random(3);
+        const auto paint = [&](int, int) -> Bytes {
+            return random.uniform() < part ? Bytes{200, 190, 180} : Bytes{100, 90, 80};
+        };
+        ByteWall wall(io::ScalarType::u8, paint, 255);
+        const Spread before = spread(wall);
+        wall.even();
+        const Spread after = spread(wall);
+        EXPECT_NEAR(after.mean, before.mean, 0.03 * before.mean) << part;
+        EXPECT_LT(after.deviation, 0.55 * before.deviation) << part;
+    }
+}
+
+TEST(EvenColours, SixteenBitsAndFloatsAreEvenedAlike) {
+    Random random(3);
+    const auto bright = [&] { return random.uniform() < 0.5; };
+    Wall<uint16_t> wide(
+        io::ScalarType::u16,
+        [&](int, int) {
+            return std::array<uint16_t, 3>{9, uint16_t(bright() ? 50'000 : 20'000), 9};
+        },
+        65'535);
+    Wall<float> floats(
+        io::ScalarType::f32,
+        [&](int, int) {
+            return std::array<float, 3>{0, bright() ? 0.8f : 0.3f, 0};
+        },
+        1);
+    const double before[] = {spread(wide).deviation, spread(floats).deviation};
+    wide.even();
+    floats.even();
+    EXPECT_LT(spread(wide).deviation, 0.55 * before[0]);
+    EXPECT_LT(spread(floats).deviation, 0.55 * before[1]);
+}
+
+/// Edges, stripes, tiles and gradients are texture. Only where four tiles meet do colours lie as at random.
+TEST(EvenColours, TextureStays) {
+    const auto grey = [](int level) { return Bytes{uint8_t(level), uint8_t(level), uint8_t(level)}; };
+    struct Texture {
+        ByteWall::Paint paint;
+        double most;  ///< share of the points that may change
+    };
+    const Texture textures[] = {
+        {[&](int, int) { return grey(120); }, 0},
+        {[&](int x, int y) { return grey(x + y); }, 0},
+        {[&](int x, int) { return grey(x < kSide / 2 ? 60 : 200); }, 0.01},
+        {[&](int x, int) { return grey(x % 40 < 4 ? 60 : 200); }, 0.01},
+        {[&](int x, int y) { return grey((x / 8 + y / 8) % 2 ? 60 : 200); }, 0.08},
+    };
+    for (size_t i = 0; i < std::size(textures); ++i) {
+        ByteWall wall(io::ScalarType::u8, textures[i].paint, 255);
+        wall.even();
+        const double share = static_cast<double>(wall.changed(6)) / static_cast<double>(wall.places.size());
+        EXPECT_LE(share, textures[i].most) << "texture " << i;
+    }
+}
+
+TEST(EvenColours, StationsAreNotMixed) {
+    // Their exposures are what gains balance (octree/colours/gains.h).
+    ByteWall wall(
+        io::ScalarType::u8,
+        [](int, int) {
+            return Bytes{100, 100, 100};
+        },
+        255);
+    Random random(5);
+    for (size_t i = 0; i < wall.places.size(); ++i) {
+        const bool second = random.uniform() < 0.5;
+        io::store(wall.record(i) + wall.offset(io::names::point_source_id), uint16_t(second ? 2 : 1));
+        if (second) io::store(wall.record(i) + wall.offset(io::names::color), Bytes{200, 200, 200});
+    }
+    wall.even();
+    EXPECT_EQ(wall.changed(), 0u);
+}
+
+TEST(EvenColours, PointsWithoutAColourOrASurfaceTakeNoPart) {
+    Random random(3);
+    const auto paint = [&](int x, int) -> Bytes {
+        if (x < kSide / 2 && random.uniform() < 0.5) return {0, 0, 0};
+        return random.uniform() < 0.5 ? Bytes{200, 200, 200} : Bytes{100, 100, 100};
+    };
+    ByteWall wall(io::ScalarType::u8, paint, 255);
+    for (size_t i = 0; i < wall.places.size(); i += 7) wall.areas[i] = 0;
+    wall.even();
+    for (size_t i = 0; i < wall.places.size(); ++i) {
+        if (io::load<Bytes>(wall.record(i) + wall.offset(io::names::color)) == Bytes{0, 0, 0} || i % 7 == 0)
+            EXPECT_EQ(wall.change(i), ColourChange{});
+        else
+            EXPECT_GE(wall.drawn(i), 99.0 / 255);  // no neighbour without a colour darkens it
+    }
+    EXPECT_GT(wall.changed(), wall.places.size() / 4);
+}
+
+TEST(EvenColours, TheTwoFacesOfADoorAreNotMixed) {
+    ByteWall wall(
+        io::ScalarType::u8,
+        [](int, int) {
+            return Bytes{100, 100, 100};
+        },
+        255);
+    Random random(5);
+    for (size_t i = 0; i < wall.places.size(); ++i) {
+        if (random.uniform() < 0.5) continue;
+        io::store(wall.record(i) + wall.offset(io::names::normal), std::array<float, 3>{0, 0, -1});
+        io::store(wall.record(i) + wall.offset(io::names::color), Bytes{200, 200, 200});
+    }
+    wall.even();
+    EXPECT_EQ(wall.changed(), 0u);
+}
+
+TEST(EvenColours, AnyBytesGiveADefinedChange) {
+    Random random(11);
+    const float odd[] = {std::numeric_limits<float>::quiet_NaN(),
+                         std::numeric_limits<float>::infinity(),
+                         -1e30f,
+                         3e38f,
+                         0,
+                         0.5f,
+                         1};
+    const auto any = [&] { return odd[static_cast<size_t>(random.uniform() * 6.999)]; };
+    Wall<float> wall(
+        io::ScalarType::f32,
+        [&](int, int) {
+            return std::array<float, 3>{any(), any(), any()};
+        },
+        1);
+    for (size_t i = 0; i < wall.places.size(); ++i) {
+        if (random.uniform() < 0.3) wall.areas[i] = std::abs(any());
+        if (random.uniform() < 0.1) wall.areas[i] = 1e-42f;
+        if (random.uniform() < 0.3)
+            io::store(wall.record(i) + wall.offset(io::names::normal),
+                      std::array<float, 3>{any(), any(), any()});
+        if (random.uniform() < 0.3) wall.places[i] = wall.places[0];
+    }
+    wall.even();
+    for (size_t i = 0; i < wall.places.size(); ++i)
+        for (const int8_t step : wall.change(i)) EXPECT_GE(step, -127);
+}
+
+TEST(EvenColours, SchemasWithoutTheAttributeAreLeftAlone) {
+    io::Schema schema;
+    schema.add(std::string(io::names::color), io::ScalarType::u8, 3);
+    std::vector<std::byte> records(schema.stride);
+    const std::vector<std::byte> before = records;
+    const Place place{};
+    const float area = 1;
+    ColourEvening(schema, {}).even(records, {&place, 1}, {&area, 1});
+    EXPECT_EQ(records, before);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
