@@ -66,7 +66,7 @@ inline constexpr std::string_view normal_oct =
 inline constexpr std::string_view area = "area";  ///< u16, share of surface at full resolution; as above
 /// u8 x2: the line where a point's disc ends, at an outer edge or a border; see octree/tree/edge_line.h
 inline constexpr std::string_view edge_line = "edge_line";
-/// i8 x3: what is added to the colour when it is drawn; see octree/colours/even_colours.h
+/// i8 x3: how the colour is changed when it is drawn; see octree/colours/even_colours.h
 inline constexpr std::string_view color_change = "color_change";
 /// Of Gaussian splats: f32 x3, the direction of the shortest axis, whose sign means nothing, or zero; and
 /// f32, the radius of the disc that covers as much as the splat, in the file's unit.

@@ -124,10 +124,7 @@ glm::dvec3 PointColours::balanced(const std::byte* record, const glm::dvec3& raw
     glm::dvec3 srgb = raw / station.white;
     if (change_) {
         const auto change = io::load<octree::ColourChange>(record + change_->offset);
-        if (change != octree::ColourChange{})
-            for (int c = 0; c < 3; ++c)
-                srgb[c] = std::clamp(
-                    srgb[c] + double{change[static_cast<size_t>(c)]} / octree::kColourChangeSteps, 0.0, 1.0);
+        if (change != octree::ColourChange{}) srgb = octree::changed_colour(srgb, change);
     }
     if (!station.curves) return srgb;
     for (int c = 0; c < 3; ++c) {

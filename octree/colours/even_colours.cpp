@@ -18,11 +18,11 @@ constexpr float kSameSide = 0.8f;                  ///< least cosine between the
 /// differ at random, as each neighbourhood knows its own mean; below .8 in stripes that are two points wide.
 /// Between these values the change fades in. Geostatistics calls this share of the variance the nugget.
 constexpr float kTexture = 0.9f, kRandom = 1.05f;
-/// Variances of luma (white is 1) between which the change fades in: differences of 1 to 2 % are not seen.
-constexpr float kInvisible = 1e-4f, kVisible = 4e-4f;
+/// Variances of luma (white is 1) between which the change fades in: differences of 2 % are hardly seen.
+constexpr float kInvisible = 2e-4f, kVisible = 8e-4f;
 /// Points are read in blocks. Groups in which successive points differ less than this hold no random colours.
 constexpr size_t kBlock = 4096, kGroup = 64;
-constexpr float kSmooth = kInvisible / 2;
+constexpr float kSmooth = kInvisible / 3;
 /// A point's mean is that of its neighbours' means, and these need their neighbours.
 constexpr size_t kMargin = 2 * kWindow;
 /// A colour up to this may be a blend with points that were never photographed, which are 0,0,0.
@@ -178,13 +178,14 @@ ColourChange ColourEvening::change_of(size_t point) {
     }
     const float part =
         fade(kTexture, kRandom, nearest / std::max(all, 1e-9f)) * fade(kInvisible, kVisible, all / sum);
-    ColourChange change = kNone;
-    for (int c = 0; c < 3; ++c) {
-        const float steps = kColourChangeSteps * part * (mean[c] / sum - color_of_[point][c]);
-        change[static_cast<size_t>(c)] =
-            static_cast<int8_t>(std::lround(std::clamp(steps, -kColourChangeSteps, kColourChangeSteps)));
-    }
-    return change;
+    const auto steps = [&](int c) {
+        const float change = kColourChangeSteps * part * (mean[c] / sum - color_of_[point][c]);
+        return static_cast<int>(
+            std::lround(std::clamp(change, -1.0f * kColourChangeSteps, 1.0f * kColourChangeSteps)));
+    };
+    const int green = steps(1);
+    return {static_cast<int8_t>(green), static_cast<int8_t>(steps(0) - green),
+            static_cast<int8_t>(steps(2) - green)};
 }
 
 }  // namespace lucarne::octree

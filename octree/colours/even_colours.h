@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
 #include "octree/tree/key.h"
@@ -14,9 +15,16 @@
 
 namespace lucarne::octree {
 
-/// What is added to a point's colour when it is drawn: i8 x 3, in kColourChangeSteps-ths of white (sRGB).
+/// What is added to a point's colour when it is drawn, in kColourChangeSteps-ths of white (sRGB): to green,
+/// and how much more to red and to blue. These two are small, and often 0.
 using ColourChange = std::array<int8_t, 3>;
-inline constexpr float kColourChangeSteps = 127;
+inline constexpr int kColourChangeSteps = 32;
+
+/// Returns a colour (sRGB, 0 to 1) with its change, limited to 0 to 1.
+inline glm::dvec3 changed_colour(const glm::dvec3& srgb, const ColourChange& change) {
+    const glm::dvec3 steps(change[0] + change[1], change[0], change[0] + change[2]);
+    return glm::clamp(srgb + steps / double{kColourChangeSteps}, 0.0, 1.0);
+}
 
 /// Evens out colours that differ from point to point at random: where a scanner, or a program that joined
 /// its scans, took neighbouring points from photographs of different exposure or with different reflections.

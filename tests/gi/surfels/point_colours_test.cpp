@@ -75,10 +75,9 @@ TEST(PointColours, ChangesEvenColoursOutBeforeGains) {
     node.header.schema.add("color_change", io::ScalarType::i8, 3);
     node.header.station_colours = {{0, 1, {2, 2, 2}, {}}};
     node.add({1, 1, 1}, {51, 102, 250});
-    io::store(&node.data.records[29], octree::ColourChange{25, -25, 127});
+    io::store(&node.data.records[29], octree::ColourChange{-6, 12, 70});
     const auto changed = node.colours();
-    expect_near(changed[0],
-                {2 * srgb_to_linear(0.2f + 25 / 127.0f), 2 * srgb_to_linear(0.4f - 25 / 127.0f), 1});
+    expect_near(changed[0], {2 * srgb_to_linear(0.2f + 6 / 32.0f), 2 * srgb_to_linear(0.4f - 6 / 32.0f), 1});
     expect_near(node.colours(false)[0], linear(51, 102, 250));
 }
 
