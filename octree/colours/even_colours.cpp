@@ -20,6 +20,9 @@ constexpr float kSameSide = 0.8f;                  ///< least cosine between the
 constexpr float kTexture = 0.9f, kRandom = 1.05f;
 /// Variances of luma (white is 1) between which the change fades in: differences of 2 % are hardly seen.
 constexpr float kInvisible = 2e-4f, kVisible = 8e-4f;
+/// Photographs that are mixed are so all over a chunk. Where fewer of its points would change, these are
+/// corners and lines as thin as the spacing, and stay.
+constexpr double kLeastChanged = 0.1;
 /// Points are read in blocks. Groups in which successive points differ less than this hold no random colours.
 constexpr size_t kBlock = 4096, kGroup = 64;
 constexpr float kSmooth = kInvisible / 3;
@@ -55,15 +58,22 @@ void ColourEvening::even(std::span<std::byte> records, std::span<const Place> pl
                          std::span<const float> areas) {
     if (!color_) return;
     const size_t points = places.size();
+    size_t changed = 0;
     for (size_t begin = 0; begin < points; begin += kBlock) {
         const size_t end = std::min(points, begin + kBlock);
         const size_t first = begin - std::min(begin, kMargin), last = std::min(points, end + kMargin);
         read(records, places, areas, first, last - first);
         find_rough_groups();
         for (size_t i = 0; i < last - first; ++i) compare(i);
-        for (size_t i = begin; i < end; ++i)
-            io::store(&records[i * schema_.stride + change_->offset], change_of(i - first));
+        for (size_t i = begin; i < end; ++i) {
+            const ColourChange change = change_of(i - first);
+            io::store(&records[i * schema_.stride + change_->offset], change);
+            changed += change != ColourChange{};
+        }
     }
+    if (static_cast<double>(changed) >= kLeastChanged * static_cast<double>(points)) return;
+    for (size_t i = 0; i < points; ++i)
+        io::store(&records[i * schema_.stride + change_->offset], ColourChange{});
 }
 
 void ColourEvening::read(std::span<const std::byte> records, std::span<const Place> places,
