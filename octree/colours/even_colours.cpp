@@ -33,10 +33,6 @@ constexpr float kBlack = 16.5f / 255;
 /// Squared radii, in edges of the root cube, whose reciprocals floats can represent.
 constexpr float kLeastRadius2 = 1e-30f;
 
-float fade(float low, float high, float value) {
-    return glm::smoothstep(low, high, value);
-}
-
 }  // namespace
 
 ColourEvening::ColourEvening(const io::Schema& schema, std::span<const double> whites, float unit_area)
@@ -186,8 +182,8 @@ ColourChange ColourEvening::change_of(size_t point) {
         all += weight * all_[j];
         mean += weight * mean_[j];
     }
-    const float part =
-        fade(kTexture, kRandom, nearest / std::max(all, 1e-9f)) * fade(kInvisible, kVisible, all / sum);
+    const float part = glm::smoothstep(kTexture, kRandom, nearest / std::max(all, 1e-9f)) *
+                       glm::smoothstep(kInvisible, kVisible, all / sum);
     const auto steps = [&](int c) {
         const float change = kColourChangeSteps * part * (mean[c] / sum - color_of_[point][c]);
         return static_cast<int>(

@@ -36,7 +36,7 @@ class ColourEvening {
     ColourEvening(const io::Schema& schema, std::span<const double> whites, float unit_area = 1);
 
     /// Writes the `color_change` of a chunk's records, which are sorted along the Morton curve. `areas`:
-    /// their shares of the surface, 0 if unknown. Memory: half a megabyte. Does nothing where the schema has
+    /// their shares of the surface, 0 if unknown. Memory: 300 kB. Does nothing where the schema has
     /// no `color_change`.
     void even(std::span<std::byte> records, std::span<const Place> places, std::span<const float> areas);
 

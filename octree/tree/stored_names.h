@@ -20,10 +20,9 @@ bool is_estimate(std::string_view name);
 /// Whether an attribute holds normals: three floats or doubles called `normal`.
 bool is_normal(const io::Attribute& attribute);
 
-/// Returns the name under which a cache stores an input's attribute. Reserved are kEstimates and
-/// `scan`; `normal` is reserved too if the attribute is not a normal or if `replace_normals`
-/// is set. Reserved names get the suffix, and so do those that have it already, so that different names stay
-/// different.
+/// Returns the name under which a cache stores an input's attribute. Reserved are kEstimates and `scan`;
+/// `normal` is reserved too if the attribute is not a normal or if `replace_normals` is set. Reserved names
+/// get the suffix, and so do those that have it already, so that different names stay different.
 std::string stored_name(const io::Attribute& attribute, bool replace_normals);
 /// Returns the input's name of the attribute stored under `name`: the inverse of stored_name.
 std::string name_in_file(std::string_view name);

@@ -238,8 +238,9 @@ void albedo(const Rendering& model) {
         "All points are sent to the device again");
     if (ImGui::Checkbox("Balance colours", &albedo.balance)) model.view.scene_changed();
     tell_cost(
-        "gains that the conversion found make stations of different exposure agree, and points that were\n"
-        "never photographed get the colour around them. All points are sent to the device again");
+        "grains of light and dark points are evened out, gains that the conversion found make stations of\n"
+        "different exposure agree, and points that were never photographed get the colour around them. All "
+        "points are sent to the device again");
 }
 
 void comparison(const Rendering& model) {
