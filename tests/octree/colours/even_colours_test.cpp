@@ -7,7 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "io/core/random.h"
+#include "octree/edit/edit.h"
+#include "tests/octree/colours/coloured_scans.h"
 
 namespace lucarne::octree {
 namespace {
@@ -63,6 +64,16 @@ struct Wall {
         const auto color = io::load<std::array<T, 3>>(record(i) + offset(io::names::color));
         const glm::dvec3 srgb(color[0], color[1], color[2]);
         return changed_colour(srgb / static_cast<double>(white), change(i)).y;
+    }
+    /// Paints half of the points, at random, and lets `change` change their records.
+    template <class Change>
+    void change_half(const std::array<T, 3>& color, const Change& change) {
+        Random random(5);
+        for (size_t i = 0; i < places.size(); ++i) {
+            if (random.uniform() < 0.5) continue;
+            io::store(record(i) + offset(io::names::color), color);
+            change(record(i));
+        }
     }
     size_t changed() {
         size_t sum = 0;
@@ -147,20 +158,16 @@ TEST(EvenColours, TextureStays) {
     }
 }
 
+Bytes grey_100(int, int) {
+    return {100, 100, 100};
+}
+
 TEST(EvenColours, StationsAreNotMixed) {
     // Their exposures are what gains balance (octree/colours/gains.h).
-    ByteWall wall(
-        io::ScalarType::u8,
-        [](int, int) {
-            return Bytes{100, 100, 100};
-        },
-        255);
-    Random random(5);
-    for (size_t i = 0; i < wall.places.size(); ++i) {
-        const bool second = random.uniform() < 0.5;
-        io::store(wall.record(i) + wall.offset(io::names::point_source_id), uint16_t(second ? 2 : 1));
-        if (second) io::store(wall.record(i) + wall.offset(io::names::color), Bytes{200, 200, 200});
-    }
+    ByteWall wall(io::ScalarType::u8, grey_100, 255);
+    wall.change_half({200, 200, 200}, [&](std::byte* record) {
+        io::store(record + wall.offset(io::names::point_source_id), uint16_t{2});
+    });
     wall.even();
     EXPECT_EQ(wall.changed(), 0u);
 }
@@ -184,18 +191,10 @@ TEST(EvenColours, PointsWithoutAColourOrASurfaceTakeNoPart) {
 }
 
 TEST(EvenColours, TheTwoFacesOfADoorAreNotMixed) {
-    ByteWall wall(
-        io::ScalarType::u8,
-        [](int, int) {
-            return Bytes{100, 100, 100};
-        },
-        255);
-    Random random(5);
-    for (size_t i = 0; i < wall.places.size(); ++i) {
-        if (random.uniform() < 0.5) continue;
-        io::store(wall.record(i) + wall.offset(io::names::normal), std::array<float, 3>{0, 0, -1});
-        io::store(wall.record(i) + wall.offset(io::names::color), Bytes{200, 200, 200});
-    }
+    ByteWall wall(io::ScalarType::u8, grey_100, 255);
+    wall.change_half({200, 200, 200}, [&](std::byte* record) {
+        io::store(record + wall.offset(io::names::normal), std::array<float, 3>{0, 0, -1});
+    });
     wall.even();
     EXPECT_EQ(wall.changed(), 0u);
 }
@@ -209,7 +208,10 @@ TEST(EvenColours, AnyBytesGiveADefinedChange) {
                          0,
                          0.5f,
                          1};
-    const auto any = [&] { return odd[static_cast<size_t>(random.uniform() * 6.999)]; };
+    const auto any = [&] {  // one in four is odd
+        const auto i = static_cast<size_t>(4 * std::size(odd) * random.uniform());
+        return i < std::size(odd) ? odd[i] : static_cast<float>(random.uniform());
+    };
     Wall<float> wall(
         io::ScalarType::f32,
         [&](int, int) {
@@ -227,6 +229,7 @@ TEST(EvenColours, AnyBytesGiveADefinedChange) {
     wall.even();
     for (size_t i = 0; i < wall.places.size(); ++i)
         for (const int8_t step : wall.change(i)) EXPECT_LE(std::abs(int{step}), 2 * kColourChangeSteps);
+    EXPECT_GT(wall.changed(), 0u);
 }
 
 TEST(EvenColours, SchemasWithoutTheAttributeAreLeftAlone) {
@@ -238,6 +241,53 @@ TEST(EvenColours, SchemasWithoutTheAttributeAreLeftAlone) {
     const float area = 1;
     ColourEvening(schema, {}).even(records, {&place, 1}, {&area, 1});
     EXPECT_EQ(records, before);
+}
+
+/// Returns the share of a cache's points whose colours are changed.
+double share_changed(const NodeSource& cache) {
+    const auto* change = cache.header().schema.find(io::names::color_change);
+    if (!change) return 0;
+    size_t changed = 0, points = 0;
+    for (uint32_t node = 0; node < cache.nodes().size(); ++node) {
+        const NodeData data = cache.load(node).value();
+        for (size_t at = 0; at < data.records.size(); at += cache.header().schema.stride, ++points)
+            changed += io::load<ColourChange>(&data.records[at + change->offset]) != ColourChange{};
+    }
+    return static_cast<double>(changed) / static_cast<double>(points);
+}
+
+/// A square of 1 m, with a corner at (x, 0, 0), whose points have two colours at random.
+test::ComputedSource mixed(double x) {
+    io::Schema schema;
+    schema.add("color", io::ScalarType::u8, 3);
+    return {schema, 30'000, [=](uint64_t index, std::byte* record) {
+                Random random(17, index);
+                io::store(record, glm::dvec3(x + random.uniform(), random.uniform(), 0));
+                io::store(record + 24, random.uniform() < 0.5 ? Bytes{200, 190, 180} : Bytes{100, 90, 80});
+            }};
+}
+
+TEST(EvenColours, ConversionsAndUpdatesEvenAndKeepWhatFilesSay) {
+    const test::TempFolder folder;
+    const auto path = folder / "a.luc";
+    const auto scan = mixed(0), far = mixed(5);  // the second one makes the root cube grow
+    const auto cache = testing::converted({&scan}, path);
+    ASSERT_TRUE(cache);
+    EXPECT_GT(share_changed(*cache), 0.5);
+    EXPECT_EQ(test::sorted_records(*cache, scan.schema().stride),
+              test::sorted_records(scan, scan.schema().stride));
+    ASSERT_TRUE(append_to_cache({&far}, {.cache = path}));
+    EXPECT_GT(share_changed(**open_cache(path)), 0.5);
+    ASSERT_TRUE(delete_from_cache({.box = {}, .scan = uint16_t{0}}, {.cache = path}));
+    EXPECT_GT(share_changed(**open_cache(path)), 0.5);
+}
+
+TEST(EvenColours, NothingIsAddedWithoutEstimates) {
+    const test::TempFolder folder;
+    const auto scan = mixed(0);
+    const auto cache = testing::converted({&scan}, folder / "a.luc", 2, NormalsMode::none);
+    ASSERT_TRUE(cache);
+    EXPECT_EQ(cache->header().schema.find(io::names::color_change), nullptr);
 }
 
 }  // namespace
