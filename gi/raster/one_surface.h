@@ -36,6 +36,29 @@ LUCARNE_FN bool is_one_surface(GBufferTexel a, vec3 normal, GBufferTexel b, vec3
     return dot(normal, other) > kCosCrease && abs(dot(other, across)) <= most;
 }
 
+// Returns whether a texel seen from behind lies on a face that another texel's surface hides: where two faces
+// of a solid meet, discs of the hidden face may stand out beyond the line at which those of the face in front
+// end, by the noise of the points. It lies within a disc's radius of that face, across a crease, and no
+// farther in small pictures. Arguments as for is_one_surface, `normal` that of `behind`.
+LUCARNE_FN bool is_over_crease(GBufferTexel behind, vec3 normal, GBufferTexel front, vec3 across,
+                               float reach) {
+    if (((behind.material ^ front.material) & 0xffffu) != 0u || (front.albedo & kSurfelHasNormal) == 0u ||
+        (behind.albedo & kTexelFromBehind) == 0u || (front.albedo & kTexelFromBehind) != 0u)
+        return false;
+    float radius = max(texel_radius(behind), texel_radius(front));
+    float most = radius + 2.0f * reach;
+    vec3 other = texel_normal(front);
+    return dot(normal, other) <= kCosCrease && abs(dot(other, across)) <= radius &&
+           dot(across, across) <= most * most;
+}
+
+// Returns how much deeper than a texel its ray meets the plane of another, m. `ray`: with depth 1. -infinity
+// if the ray nearly misses the plane, or meets it from behind.
+LUCARNE_FN float depth_to_plane(vec3 normal, vec3 across, vec3 ray) {
+    float slope = dot(normal, ray);
+    return slope < -0.1f ? dot(normal, across) / slope : uintBitsToFloat(0xff800000u);
+}
+
 // Returns whether a texel is seen at so low an angle that it may be a rim. `ray`: unit, from the eye.
 LUCARNE_FN bool may_be_rim(GBufferTexel texel, vec3 ray) {
     return dot(texel_normal(texel), ray) >= -kCosRim;

@@ -1,5 +1,7 @@
 #include "gi/raster/rims.h"
 
+#include <glm/vec2.hpp>
+
 #include "gi/raster/bindings.h"
 #include "gi/raster/native/rims.h"
 #include "gi/raster/uniforms.h"
@@ -14,7 +16,7 @@ const Defines kApply = {{"LUCARNE_APPLY", "1"}};
 Result<void> turn_rims(Device& device, const CameraView& view, GBuffer& target) {
     if (device.native_passes()) return native::turn_rims(view, target.texels);
     const size_t pixels = size_t{view.width} * view.height;
-    LUCARNE_TRY(device.reserve(target.coverage, pixels * sizeof(uint32_t), "edges"));
+    LUCARNE_TRY(device.reserve(target.coverage, pixels * sizeof(glm::uvec2), "edges"));
     LUCARNE_ASSIGN(const Program* find, device.program("gi/raster/rims.comp"));
     LUCARNE_ASSIGN(const Program* apply, device.program("gi/raster/rims.comp", kApply));
     target.texels.bind(raster::kBindTexels);

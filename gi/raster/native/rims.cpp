@@ -76,8 +76,8 @@ class PixelPoints {
           first_(view_across(view, glm::vec2(0.5f))),
           right_(view_across(view, glm::vec2(1.5f, 0.5f)) - first_),
           down_(view_across(view, glm::vec2(0.5f, 1.5f)) - first_) {}
-    /// view_ray(), unit.
-    glm::vec3 ray(int x, int y) const { return parallel_ ? forward_ : glm::normalize(at(x, y, 1)); }
+    /// view_ray(): its depth is 1.
+    glm::vec3 ray(int x, int y) const { return parallel_ ? forward_ : at(x, y, 1); }
     /// Relative to the view's origin, as view_offset().
     glm::vec3 at(int x, int y, float depth) const {
         const glm::vec3 across = first_ + static_cast<float>(x) * right_ + static_cast<float>(y) * down_;
@@ -114,11 +114,49 @@ bool is_rim(const CameraView& view, const PixelPoints& points, const GBufferTexe
     return others > 0;
 }
 
-/// A texel and its new normal.
+/// A texel whose depth and normal change.
 struct TurnedTexel {
     size_t at;
+    float depth;
     uint32_t normal;
 };
+
+/// Returns a texel of a hidden face moved to the face in front; otherwise as it is. See rims.comp.
+TurnedTexel in_front_face(const CameraView& view, const PixelPoints& points, const GBufferTexel* texels,
+                          int x, int y) {
+    const auto width = static_cast<int>(view.width), height = static_cast<int>(view.height);
+    const auto at = static_cast<size_t>(y) * view.width + static_cast<size_t>(x);
+    const GBufferTexel& texel = texels[at];
+    const glm::vec3 place = points.at(x, y, texel.depth), normal = raster::stored_normal(texel);
+    const float pixel = pixel_height(view, texel.depth), farthest = raster::kRimReach * pixel;
+    const auto inside = [&](int column, int row) {
+        return column >= 0 && row >= 0 && column < width && row < height;
+    };
+    for (int steps = 1; steps <= raster::kRimReach; steps *= 2) {
+        const float reach = static_cast<float>(steps) * pixel;
+        for (int dy = -steps; dy <= steps; dy += steps)
+            for (int dx = -steps; dx <= steps; dx += steps) {
+                if ((dx == 0 && dy == 0) || !inside(x + dx, y + dy)) continue;
+                const GBufferTexel& front = texels[(y + dy) * width + x + dx];
+                if (front.depth == 0) continue;
+                const glm::vec3 across = points.at(x + dx, y + dy, front.depth) - place;
+                if (!raster::is_over_crease(texel, normal, front, across, reach)) continue;
+                const int away_x = x - dx / steps * raster::kRimReach;  // where its own surface may go on
+                const int away_y = y - dy / steps * raster::kRimReach;
+                if (inside(away_x, away_y)) {
+                    const GBufferTexel& beyond = texels[away_y * width + away_x];
+                    if (beyond.depth != 0 &&
+                        raster::is_one_surface(texel, normal, beyond,
+                                               points.at(away_x, away_y, beyond.depth) - place, farthest))
+                        continue;
+                }
+                const float depth =
+                    texel.depth + raster::depth_to_plane(texel_normal(front), across, points.ray(x, y));
+                if (depth > 0) return {at, depth, front.normal};
+            }
+    }
+    return {at, texel.depth, texel.normal};
+}
 
 /// Finds the rims of some rows.
 void find_rims(const CameraView& view, const GBufferTexel* texels, Sides& sides, size_t first, size_t last,
@@ -134,9 +172,13 @@ void find_rims(const CameraView& view, const GBufferTexel* texels, Sides& sides,
                 const size_t column = 64 * i + static_cast<size_t>(std::countr_zero(left));
                 const size_t at = y * view.width + column;
                 const int x = static_cast<int>(column), row = static_cast<int>(y);
-                const glm::vec3 ray = points.ray(x, row);
-                if (!raster::may_be_rim(texels[at], ray) || !is_rim(view, points, texels, x, row)) continue;
-                found.push_back({at, encode_octahedral(raster::rim_normal(texels[at], ray))});
+                const glm::vec3 ray = glm::normalize(points.ray(x, row));
+                if (raster::may_be_rim(texels[at], ray) && is_rim(view, points, texels, x, row)) {
+                    found.push_back(
+                        {at, texels[at].depth, encode_octahedral(raster::rim_normal(texels[at], ray))});
+                } else if (behind >> (column % 64) & 1) {
+                    found.push_back(in_front_face(view, points, texels, x, row));
+                }
             }
         }
 }
@@ -153,7 +195,10 @@ Result<void> turn_rims(const CameraView& view, const Buffer& texels) {
         find_rims(view, out, sides, first, last, found[first / kRowsPerTask]);
     });
     for (const auto& rims : found)
-        for (const TurnedTexel& rim : rims) out[rim.at].normal = rim.normal;
+        for (const TurnedTexel& rim : rims) {
+            out[rim.at].depth = rim.depth;
+            out[rim.at].normal = rim.normal;
+        }
     return {};
 }
 

@@ -33,6 +33,29 @@ std::vector<Surfel> column_before_wall(float spacing, float side = 1) {
     return surfels;
 }
 
+/// Two faces that meet in the upright line through (0, 2): one at y = 2, which faces the viewer, and one at x
+/// = 0 from there to y = `end`, with normals to `side` of x. Their discs end at the line; noise of .3
+/// spacings.
+std::vector<Surfel> two_faces(float spacing, float end, float side) {
+    std::vector<Surfel> surfels;
+    std::mt19937 random(6);
+    std::normal_distribution<float> noise(0, 0.2f * spacing);
+    const float beyond = 0.05f * spacing;
+    for (float along = 0.5f * spacing; along < 1; along += spacing)
+        for (float z = -0.5f; z <= 0.5f; z += spacing) {
+            surfels.push_back({{-along, 2 + noise(random), z}, {0, -1, 0}, kWhite, 0, spacing * spacing, 0});
+            surfels.back().edge = {1 / (along + beyond), 0, 0};
+        }
+    const float back = end > 2 ? 1.0f : -1.0f;
+    for (float along = 0.5f * spacing; along < back * (end - 2); along += spacing)
+        for (float z = -0.5f; z <= 0.5f; z += spacing) {
+            surfels.push_back(
+                {{noise(random), 2 + back * along, z}, {side, 0, 0}, kWhite, 0, spacing * spacing, 0});
+            surfels.back().edge = {0, -back / (along + beyond), 0};
+        }
+    return surfels;
+}
+
 class Rims : public GBufferTest {
  protected:
     /// Draws surfels blended, with their rims turned or not.
@@ -126,6 +149,45 @@ TEST_P(Rims, FlippedNormalsOfAWallStillFaceTheViewer) {
 }
 
 /// A noisy ceiling that is seen at so low an angle that some of its discs show their other side.
+TEST_P(Rims, HiddenFacesOfASolidDoNotShowAtItsEdges) {
+    for (const float spacing : {0.01f, 0.02f}) {
+        const auto surfels = two_faces(spacing, 3, 1);
+        const CameraView view = look({-0.7f, 0, 0}, {-0.2f, 2, 0}, 480, 360, 0.7f);
+        const Picture before = picture(surfels, view, false), after = picture(surfels, view, true);
+        size_t hidden = 0, left = 0;
+        for (uint32_t at = 0; at < after.texels.size(); ++at) {
+            if (before.empty(at) || texel_normal(before.texels[at]).y < -0.9f) {
+                EXPECT_EQ(std::memcmp(&before.texels[at], &after.texels[at], sizeof(GBufferTexel)), 0);
+                continue;
+            }
+            ++hidden;
+            if (texel_normal(after.texels[at]).y > -0.9f) {
+                ++left;
+                continue;
+            }
+            const glm::vec2 pixel(static_cast<float>(at % view.width), static_cast<float>(at / view.width));
+            EXPECT_NEAR(texel_position(view, pixel, after.texels[at]).y, 2, 1.2f * spacing);
+            EXPECT_EQ(after.texels[at].albedo, before.texels[at].albedo);
+            EXPECT_EQ(after.ids[at], before.ids[at]);
+        }
+        EXPECT_GT(hidden, 50u) << spacing;
+        EXPECT_LE(left, hidden / 50) << spacing;
+    }
+}
+
+TEST_P(Rims, WallsSeenFromBehindStayAsTheyAreInCorners) {
+    const auto surfels = two_faces(0.02f, 1, 1);
+    const CameraView view = look({-0.7f, 0.5f, 0}, {-0.1f, 2, 0}, 320, 240, 0.7f);
+    const Picture before = picture(surfels, view, false), after = picture(surfels, view, true);
+    size_t behind = 0, changed = 0;
+    for (uint32_t at = 0; at < after.texels.size(); ++at) {
+        behind += (before.texels[at].albedo & kTexelFromBehind) != 0;
+        changed += std::memcmp(&before.texels[at], &after.texels[at], sizeof(GBufferTexel)) != 0;
+    }
+    EXPECT_GT(behind, 5000u);
+    EXPECT_LE(changed, behind / 1000);
+}
+
 TEST_P(Rims, MostTexelsOfASurfaceDecideOnItsSide) {
     for (const float side : {1.0f, -1.0f}) {
         std::vector<Surfel> surfels;
@@ -155,29 +217,34 @@ TEST_P(Rims, MostTexelsOfASurfaceDecideOnItsSide) {
 }
 
 TEST_P(Rims, TheSameAsByShaders) {
-    const auto surfels = column_before_wall(0.02f);
-    const CameraView view = look({0.2f, 0, 0}, {0, 1, 0.1f}, 320, 240, 0.7f);
-    GBuffer target;
-    const SurfelCloud cloud(surfels, {{-32, -32, -32}, 64}, 1024);
-    auto loaded = load_cloud(*device, cloud);
-    ASSERT_TRUE(loaded) << loaded.error().line();
-    ASSERT_TRUE(rasterize(*device, (*loaded)->cut, view, target));
-    const size_t pixels = size_t{view.width} * view.height;
-    const auto drawn = target.texels.download_all<GBufferTexel>(pixels);
-    ASSERT_TRUE(turn_rims(*device, view, target));
-    const auto turned = target.texels.download_all<GBufferTexel>(pixels);
-    target.texels.upload_all(drawn);
-    device->use_native_passes(false);
-    ASSERT_TRUE(turn_rims(*device, view, target));
-    const auto by_shaders = target.texels.download_all<GBufferTexel>(pixels);
-    size_t changed = 0, others = 0;
-    for (size_t at = 0; at < pixels; ++at) {
-        changed += std::memcmp(&drawn[at], &turned[at], sizeof(GBufferTexel)) != 0;
-        const float apart = glm::distance(texel_normal(turned[at]), texel_normal(by_shaders[at]));
-        others += !(apart < 2e-3f) || turned[at].albedo != by_shaders[at].albedo;
+    const auto column = column_before_wall(0.02f), corner = two_faces(0.02f, 3, 1);
+    for (const auto* surfels : {&column, &corner}) {
+        const float x = surfels == &column ? 0.2f : -0.7f;
+        const CameraView view = look({x, 0, 0}, {0, 1, 0.1f}, 320, 240, 0.7f);
+        GBuffer target;
+        const SurfelCloud cloud(*surfels, {{-32, -32, -32}, 64}, 1024);
+        auto loaded = load_cloud(*device, cloud);
+        ASSERT_TRUE(loaded) << loaded.error().line();
+        ASSERT_TRUE(rasterize(*device, (*loaded)->cut, view, target));
+        const size_t pixels = size_t{view.width} * view.height;
+        const auto drawn = target.texels.download_all<GBufferTexel>(pixels);
+        ASSERT_TRUE(turn_rims(*device, view, target));
+        const auto turned = target.texels.download_all<GBufferTexel>(pixels);
+        target.texels.upload_all(drawn);
+        device->use_native_passes(false);
+        ASSERT_TRUE(turn_rims(*device, view, target));
+        device->use_native_passes(GetParam());
+        const auto by_shaders = target.texels.download_all<GBufferTexel>(pixels);
+        size_t changed = 0, others = 0;
+        for (size_t at = 0; at < pixels; ++at) {
+            changed += std::memcmp(&drawn[at], &turned[at], sizeof(GBufferTexel)) != 0;
+            const float apart = glm::distance(texel_normal(turned[at]), texel_normal(by_shaders[at]));
+            others += !(apart < 2e-3f) || turned[at].albedo != by_shaders[at].albedo ||
+                      !(std::abs(turned[at].depth - by_shaders[at].depth) <= 1e-5f * turned[at].depth);
+        }
+        EXPECT_GT(changed, 20u);
+        EXPECT_LE(others, 2u) << "where the last bits decide";
     }
-    EXPECT_GT(changed, 20u);
-    EXPECT_LE(others, 2u) << "where the last bits decide";
 }
 
 INSTANTIATE_TEST_SUITE_P(Passes, Rims, ::testing::Bool(), passes_name);
