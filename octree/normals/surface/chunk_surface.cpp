@@ -49,6 +49,10 @@ constexpr double kThin = 4;
 /// Neighbours whose variance across their main axis is below this share of that along it are a strip, such as
 /// a wire or the rim of a pane: two points wide, or three. Half a disc has .28.
 constexpr float kStrip = 0.13f;
+/// A disc is doubtful (earned.h) if its normal is known no better than to this, radians, and if its neighbours'
+/// variance across their main axis is below this share of that along it, or it is sparse (kThin). Of even
+/// surfaces the normal is known to .01 to .02, and noise is smoothed by the window.
+constexpr float kDoubtfulDeviation = 0.03f, kDoubtfulStrip = 0.4f;
 /// Largest share of a point of a strip, in those of the neighbours.
 constexpr float kMostOfStrip = 1.0f;
 /// From this ratio on the group of points in the air may be farther from the surface than kWindow.
@@ -277,7 +281,10 @@ class SiteEstimator {
             const double look = std::max(double{kEarnedLook * surfel_radius(area, 0)},
                                          crowding > kVeryCrowded ? kWindow * reach : 0.0);
             if (!around.knows(look)) return look;
-            const float earned = earned_at(around, look, fit.normal, area, sparser > kThin);
+            const bool doubtful = !side && fit.deviation > kDoubtfulDeviation &&
+                                  (fit.roundness < kDoubtfulStrip || sparser > kThin);
+            const float earned =
+                earned_at(around, look, {fit.normal, surfel_radius(area, 0), sparser > kThin, doubtful});
             if (apart && earned < area) return leave_out(site);
             area = std::min(area, earned);
             if (wide && !apart) area = std::min(area, most_beside(nearest, area));
@@ -332,13 +339,10 @@ class SiteEstimator {
                                  steps_.begin() + static_cast<ptrdiff_t>(last + 1));
     }
 
-    /// The largest share that a site of a share has earned, judged by the points within `look`; infinity:
-    /// any.
-    float earned_at(ChunkNeighbours::Surroundings& around, double look, const glm::vec3& normal, float area,
-                    bool sparse) {
+    /// The largest share that a disc has earned, judged by the points within `look`; infinity: any.
+    static float earned_at(ChunkNeighbours::Surroundings& around, double look, const WideDisc& disc) {
         const auto view = around.around(look);
-        return earned_area(view.tile, view.centre, static_cast<float>(view.radius),
-                           {normal, surfel_radius(area, 0), sparse});
+        return earned_area(view.tile, view.centre, static_cast<float>(view.radius), disc);
     }
 
     /// The largest share of a site beside its neighbours: a point in the air has a wide cell although they

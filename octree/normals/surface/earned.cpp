@@ -20,6 +20,8 @@ constexpr float kInRadii = 0.08f;
 /// as those around them, most of those in the air have a share below .3, and those on walls over .7. In a
 /// corner between walls of one density it is .5.
 constexpr float kLeastFlat = 0.45f;
+/// The same for doubtful discs.
+constexpr float kDoubtfulCrowd = 1.2f, kDoubtfulFlat = 0.6f;
 /// Around a sparse disc without a crowd, points up to so many radii of the disc over its plane lie in it, and
 /// least share of them: the points of a sheet with noise do, and .4 at the corner of a box; of points that
 /// are scattered in all directions, .19 do.
@@ -70,10 +72,11 @@ float earned_area(const Tile& around, const glm::vec3& centre, float look, const
     near.all = crowd.all;
     const auto points = static_cast<float>(crowd.all);
     const float sheet = kCoverageRaw * look2 / (disc.radius * disc.radius);
-    const float alone = disc.sparse ? lone_area(kLoneReach * kLoneReach * nearest2) : kAny;
-    if (points < kCrowd * sheet)
+    const bool lone = disc.sparse || disc.doubtful;
+    const float alone = lone ? lone_area(kLoneReach * kLoneReach * nearest2) : kAny;
+    if (points < (disc.doubtful ? kDoubtfulCrowd : kCrowd) * sheet)
         return crowd.all >= kFewestScattered && near.share() < kLeastNear ? alone : kAny;
-    if (crowd.share() >= kLeastFlat) return kAny;
+    if (crowd.share() >= (disc.doubtful ? kDoubtfulFlat : kLeastFlat)) return kAny;
     each([&](const glm::vec3& p, float height) {
         if (glm::dot(p, sum) >= 0) return;
         ++away.all;
