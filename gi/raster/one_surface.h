@@ -52,8 +52,16 @@ LUCARNE_FN bool is_over_crease(GBufferTexel behind, vec3 normal, GBufferTexel fr
            dot(across, across) <= most * most;
 }
 
-// Returns how much deeper than a texel its ray meets the plane of another, m. `ray`: with depth 1. -infinity
-// if the ray nearly misses the plane, or meets it from behind.
+// Returns whether a texel shows what is behind another: a surface clearly deeper, seen from the front.
+// `reach` as for is_one_surface.
+LUCARNE_FN bool is_background(GBufferTexel back, GBufferTexel texel, float reach) {
+    return (back.albedo & kTexelFromBehind) == 0u && (back.albedo & kSurfelHasNormal) != 0u &&
+           back.depth > texel.depth + 2.0f * texel_radius(texel) + reach;
+}
+
+// Returns how much deeper than a place its ray meets the plane of a texel, m. `normal`: of the texel;
+// `across` leads from the place to the texel's point, m; `ray`: with depth 1. -infinity if the ray nearly
+// misses the plane, or meets it from behind.
 LUCARNE_FN float depth_to_plane(vec3 normal, vec3 across, vec3 ray) {
     float slope = dot(normal, ray);
     return slope < -0.1f ? dot(normal, across) / slope : uintBitsToFloat(0xff800000u);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <vector>
 
 #include "gi/raster/one_surface.h"
@@ -114,54 +115,100 @@ bool is_rim(const CameraView& view, const PixelPoints& points, const GBufferTexe
     return others > 0;
 }
 
-/// A texel whose depth and normal change.
-struct TurnedTexel {
-    size_t at;
+/// A texel that changes: it shows what the texel `from` shows, or itself, at another depth or with another
+/// normal.
+struct ChangedTexel {
+    size_t at, from;
     float depth;
     uint32_t normal;
 };
 
-/// Returns a texel of a hidden face moved to the face in front; otherwise as it is. See rims.comp.
-TurnedTexel in_front_face(const CameraView& view, const PixelPoints& points, const GBufferTexel* texels,
-                          int x, int y) {
-    const auto width = static_cast<int>(view.width), height = static_cast<int>(view.height);
-    const auto at = static_cast<size_t>(y) * view.width + static_cast<size_t>(x);
-    const GBufferTexel& texel = texels[at];
-    const glm::vec3 place = points.at(x, y, texel.depth), normal = raster::stored_normal(texel);
-    const float pixel = pixel_height(view, texel.depth), farthest = raster::kRimReach * pixel;
-    const auto inside = [&](int column, int row) {
-        return column >= 0 && row >= 0 && column < width && row < height;
-    };
-    for (int steps = 1; steps <= raster::kRimReach; steps *= 2) {
-        const float reach = static_cast<float>(steps) * pixel;
-        for (int dy = -steps; dy <= steps; dy += steps)
-            for (int dx = -steps; dx <= steps; dx += steps) {
-                if ((dx == 0 && dy == 0) || !inside(x + dx, y + dy)) continue;
-                const GBufferTexel& front = texels[(y + dy) * width + x + dx];
-                if (front.depth == 0) continue;
-                const glm::vec3 across = points.at(x + dx, y + dy, front.depth) - place;
-                if (!raster::is_over_crease(texel, normal, front, across, reach)) continue;
-                const int away_x = x - dx / steps * raster::kRimReach;  // where its own surface may go on
-                const int away_y = y - dy / steps * raster::kRimReach;
-                if (inside(away_x, away_y)) {
-                    const GBufferTexel& beyond = texels[away_y * width + away_x];
-                    if (beyond.depth != 0 &&
-                        raster::is_one_surface(texel, normal, beyond,
-                                               points.at(away_x, away_y, beyond.depth) - place, farthest))
-                        continue;
+/// Finds what to show in place of hidden faces. See rims.comp.
+class HiddenFaces {
+ public:
+    HiddenFaces(const CameraView& view, const PixelPoints& points, const GBufferTexel* texels)
+        : view_(view),
+          points_(points),
+          texels_(texels),
+          width_(static_cast<int>(view.width)),
+          height_(static_cast<int>(view.height)) {}
+
+    /// Returns what a texel that is seen from behind shows instead, if it belongs to a hidden face.
+    std::optional<ChangedTexel> replaced(int x, int y) const {
+        const GBufferTexel& texel = texel_at(x, y);
+        const Place place{x,
+                          y,
+                          texel,
+                          points_.at(x, y, texel.depth),
+                          raster::stored_normal(texel),
+                          pixel_height(view_, texel.depth)};
+        for (int steps = 1; steps <= raster::kRimReach; steps *= 2)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) {
+                    if ((dx == 0 && dy == 0) || !is_inside(x + steps * dx, y + steps * dy)) continue;
+                    const int column = x + steps * dx, row = y + steps * dy;
+                    const GBufferTexel& front = texel_at(column, row);
+                    if (front.depth == 0) continue;
+                    const glm::vec3 across = points_.at(column, row, front.depth) - place.point;
+                    const float reach = static_cast<float>(steps) * place.pixel;
+                    if (!raster::is_over_crease(texel, place.normal, front, across, reach)) continue;
+                    if (const auto changed = beyond(place, -dx, -dy, front, across)) return changed;
                 }
-                const float depth =
-                    texel.depth + raster::depth_to_plane(texel_normal(front), across, points.ray(x, y));
-                if (depth > 0) return {at, depth, front.normal};
-            }
+        return std::nullopt;
     }
-    return {at, texel.depth, texel.normal};
-}
+
+ private:
+    struct Place {
+        int x, y;
+        const GBufferTexel& texel;
+        glm::vec3 point, normal;  // relative to the view's origin, m; as stored
+        float pixel;              // m
+    };
+
+    size_t index(int x, int y) const { return static_cast<size_t>(y * width_ + x); }
+    const GBufferTexel& texel_at(int x, int y) const { return texels_[index(x, y)]; }
+    bool is_inside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
+
+    /// Returns what lies beyond the hidden face, in a direction away from the face in front; or else that
+    /// face.
+    std::optional<ChangedTexel> beyond(const Place& place, int dx, int dy, const GBufferTexel& front,
+                                       const glm::vec3& across) const {
+        const size_t at = index(place.x, place.y);
+        const glm::vec3 ray = points_.ray(place.x, place.y);
+        for (int k = 1; k <= raster::kRimReach; ++k) {
+            const int column = place.x + k * dx, row = place.y + k * dy;
+            if (!is_inside(column, row)) break;
+            const size_t from = index(column, row);
+            const GBufferTexel& other = texels_[from];
+            if (other.depth == 0) return ChangedTexel{at, from, 0, other.normal};
+            const glm::vec3 point = points_.at(column, row, other.depth);
+            const float reach = static_cast<float>(k) * place.pixel;
+            if (raster::is_one_surface(place.texel, place.normal, other, point - place.point, reach)) {
+                if (k == raster::kRimReach) return std::nullopt;
+                continue;
+            }
+            if (!raster::is_background(other, place.texel, reach)) break;
+            const float deeper = raster::depth_to_plane(
+                texel_normal(other), point - points_.at(place.x, place.y, other.depth), ray);
+            const float depth = other.depth + deeper;
+            return ChangedTexel{at, from, depth > place.texel.depth ? depth : other.depth, other.normal};
+        }
+        const float depth = place.texel.depth + raster::depth_to_plane(texel_normal(front), across, ray);
+        if (!(depth > 0)) return std::nullopt;
+        return ChangedTexel{at, at, depth, front.normal};
+    }
+
+    const CameraView& view_;
+    const PixelPoints& points_;
+    const GBufferTexel* texels_;
+    int width_, height_;
+};
 
 /// Finds the rims of some rows.
 void find_rims(const CameraView& view, const GBufferTexel* texels, Sides& sides, size_t first, size_t last,
-               std::vector<TurnedTexel>& found) {
+               std::vector<ChangedTexel>& found) {
     const PixelPoints points(view);
+    const HiddenFaces hidden(view, points, texels);
     for (size_t y = first; y < last; ++y)
         for (size_t i = 0; i < sides.front.words(); ++i) {
             const uint64_t front = sides.front.word(y, i), behind = sides.behind.word(y, i);
@@ -174,10 +221,10 @@ void find_rims(const CameraView& view, const GBufferTexel* texels, Sides& sides,
                 const int x = static_cast<int>(column), row = static_cast<int>(y);
                 const glm::vec3 ray = glm::normalize(points.ray(x, row));
                 if (raster::may_be_rim(texels[at], ray) && is_rim(view, points, texels, x, row)) {
-                    found.push_back(
-                        {at, texels[at].depth, encode_octahedral(raster::rim_normal(texels[at], ray))});
+                    const uint32_t normal = encode_octahedral(raster::rim_normal(texels[at], ray));
+                    found.push_back({at, at, texels[at].depth, normal});
                 } else if (behind >> (column % 64) & 1) {
-                    found.push_back(in_front_face(view, points, texels, x, row));
+                    if (const auto changed = hidden.replaced(x, row)) found.push_back(*changed);
                 }
             }
         }
@@ -185,19 +232,25 @@ void find_rims(const CameraView& view, const GBufferTexel* texels, Sides& sides,
 
 }  // namespace
 
-Result<void> turn_rims(const CameraView& view, const Buffer& texels) {
+Result<void> turn_rims(const CameraView& view, const Buffer& texels, const Buffer& ids) {
     LUCARNE_ASSIGN(const MappedBuffer memory, texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer ids_memory, ids.map());
     GBufferTexel* const out = memory.as<GBufferTexel>().data();
+    uint32_t* const ids_out = ids_memory.as<uint32_t>().data();
     Sides sides(view, out);
     // No texel may see what has become of its neighbours.
-    std::vector<std::vector<TurnedTexel>> found((view.height + kRowsPerTask - 1) / kRowsPerTask);
+    std::vector<std::vector<ChangedTexel>> found((view.height + kRowsPerTask - 1) / kRowsPerTask);
     parallel_ranges(view.height, kRowsPerTask, [&](size_t first, size_t last) {
         find_rims(view, out, sides, first, last, found[first / kRowsPerTask]);
     });
     for (const auto& rims : found)
-        for (const TurnedTexel& rim : rims) {
+        for (const ChangedTexel& rim : rims) {
+            // What is copied does not change itself, apart from its normal: it is not seen from behind.
+            out[rim.at].albedo = out[rim.from].albedo;
+            out[rim.at].material = out[rim.from].material;
             out[rim.at].depth = rim.depth;
             out[rim.at].normal = rim.normal;
+            ids_out[rim.at] = ids_out[rim.from];
         }
     return {};
 }

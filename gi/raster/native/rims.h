@@ -5,7 +5,7 @@
 
 namespace lucarne::gi::native {
 
-/// Turns the normals of rims as gi::turn_rims() does. `texels`: GBufferTexel[view.width * view.height].
-Result<void> turn_rims(const CameraView& view, const Buffer& texels);
+/// Does what gi::turn_rims() does. `texels`: GBufferTexel[view.width * view.height]; `ids`: as many uint.
+Result<void> turn_rims(const CameraView& view, const Buffer& texels, const Buffer& ids);
 
 }  // namespace lucarne::gi::native

@@ -49,9 +49,9 @@ constexpr double kThin = 4;
 /// Neighbours whose variance across their main axis is below this share of that along it are a strip, such as
 /// a wire or the rim of a pane: two points wide, or three. Half a disc has .28.
 constexpr float kStrip = 0.13f;
-/// A disc is doubtful (earned.h) if its normal is known no better than to this, radians, and if its neighbours'
-/// variance across their main axis is below this share of that along it, or it is sparse (kThin). Of even
-/// surfaces the normal is known to .01 to .02, and noise is smoothed by the window.
+/// A disc is doubtful (earned.h) if its normal is known no better than to this, radians, and if its
+/// neighbours' variance across their main axis is below this share of that along it, or it is sparse (kThin).
+/// Of even surfaces the normal is known to .01 to .02, and noise is smoothed by the window.
 constexpr float kDoubtfulDeviation = 0.03f, kDoubtfulStrip = 0.4f;
 /// Largest share of a point of a strip, in those of the neighbours.
 constexpr float kMostOfStrip = 1.0f;

@@ -29,9 +29,9 @@ float lone_area(float nearest2);
 /// the points of the crowd have on average, but its disc reaches at most half-way to the nearest point.
 /// Around a sparse disc without a crowd, .3 of the points must lie near its plane; else they are scattered in
 /// the air, and the same holds. A doubtful disc is in a crowd already where a fifth more points lie than in a
-/// sheet, and .6 of them must lie in its plane: a curtain of mixed pixels leads from one thing to another, and
-/// most points around it belong to these. `centre` is relative to the tile's origin. `around`: all points within
-/// `look`, usually kEarnedLook radii, of it.
+/// sheet, and .6 of them must lie in its plane: a curtain of mixed pixels leads from one thing to another,
+/// and most points around it belong to these. `centre` is relative to the tile's origin. `around`: all points
+/// within `look`, usually kEarnedLook radii, of it.
 float earned_area(const Tile& around, const glm::vec3& centre, float look, const WideDisc& disc);
 
 }  // namespace lucarne::octree

@@ -150,29 +150,40 @@ TEST_P(Rims, FlippedNormalsOfAWallStillFaceTheViewer) {
 
 /// A noisy ceiling that is seen at so low an angle that some of its discs show their other side.
 TEST_P(Rims, HiddenFacesOfASolidDoNotShowAtItsEdges) {
-    for (const float spacing : {0.01f, 0.02f}) {
-        const auto surfels = two_faces(spacing, 3, 1);
-        const CameraView view = look({-0.7f, 0, 0}, {-0.2f, 2, 0}, 480, 360, 0.7f);
-        const Picture before = picture(surfels, view, false), after = picture(surfels, view, true);
-        size_t hidden = 0, left = 0;
-        for (uint32_t at = 0; at < after.texels.size(); ++at) {
-            if (before.empty(at) || texel_normal(before.texels[at]).y < -0.9f) {
-                EXPECT_EQ(std::memcmp(&before.texels[at], &after.texels[at], sizeof(GBufferTexel)), 0);
-                continue;
+    for (const float spacing : {0.01f, 0.02f})
+        for (const bool before_wall : {true, false}) {
+            auto surfels = two_faces(spacing, 3, 1);
+            if (before_wall) append(surfels, wall(5, 5, 0.04f, kRed, 3));
+            const CameraView view = look({-0.7f, 0, 0}, {-0.2f, 2, 0}, 480, 360, 0.7f);
+            const Picture before = picture(surfels, view, false), after = picture(surfels, view, true);
+            size_t hidden = 0, left = 0, behind = 0;
+            for (uint32_t at = 0; at < after.texels.size(); ++at) {
+                const GBufferTexel& texel = after.texels[at];
+                if (before.empty(at) || before.red(at) || texel_normal(before.texels[at]).y < -0.9f) {
+                    EXPECT_EQ(std::memcmp(&before.texels[at], &texel, sizeof(GBufferTexel)), 0);
+                    continue;
+                }
+                ++hidden;
+                const glm::vec2 pixel(static_cast<float>(at % view.width),
+                                      static_cast<float>(at / view.width));
+                const glm::vec3 place = texel_position(view, pixel, texel);
+                if (after.empty(at) || after.red(at)) {  // beyond the block
+                    ++behind;
+                    EXPECT_EQ(after.empty(at), !before_wall);
+                    EXPECT_EQ(after.empty(at), texel.depth == 0);
+                    EXPECT_NEAR(before_wall ? place.y : 5, 5, 0.03f);
+                } else if (texel_normal(texel).y > -0.9f) {
+                    ++left;
+                } else {
+                    EXPECT_NEAR(place.y, 2, 1.2f * spacing);
+                    EXPECT_EQ(texel.albedo, before.texels[at].albedo);
+                    EXPECT_EQ(after.ids[at], before.ids[at]);
+                }
             }
-            ++hidden;
-            if (texel_normal(after.texels[at]).y > -0.9f) {
-                ++left;
-                continue;
-            }
-            const glm::vec2 pixel(static_cast<float>(at % view.width), static_cast<float>(at / view.width));
-            EXPECT_NEAR(texel_position(view, pixel, after.texels[at]).y, 2, 1.2f * spacing);
-            EXPECT_EQ(after.texels[at].albedo, before.texels[at].albedo);
-            EXPECT_EQ(after.ids[at], before.ids[at]);
+            EXPECT_GT(hidden, 50u) << spacing;
+            EXPECT_LE(left, hidden / 20) << spacing;
+            EXPECT_GT(behind, hidden / 2) << spacing;
         }
-        EXPECT_GT(hidden, 50u) << spacing;
-        EXPECT_LE(left, hidden / 50) << spacing;
-    }
 }
 
 TEST_P(Rims, WallsSeenFromBehindStayAsTheyAreInCorners) {

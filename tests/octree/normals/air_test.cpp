@@ -238,11 +238,12 @@ TEST(Air, GroupsAroundACordAreDots) {
     EXPECT_NEAR(drawn(found, 0, first).area, 4, .08);
 }
 
-/// A cable 2 cm thick before a wall, and the curtain of mixed pixels behind both of its outlines, ever sparser. No
-/// station is known.
+/// A cable 2 cm thick before a wall, and the curtain of mixed pixels behind both of its outlines, ever
+/// sparser. No station is known.
 TEST(Air, CurtainsBehindACableAreDots) {
     constexpr double kRadius = 0.01, kLength = 1.2, kDepth = 0.15;
-    const glm::dvec3 back = glm::normalize(glm::dvec3(1, 0, -1)), across = glm::normalize(glm::dvec3(1, 0, 1));
+    const glm::dvec3 back = glm::normalize(glm::dvec3(1, 0, -1)),
+                     across = glm::normalize(glm::dvec3(1, 0, 1));
     double mean = 0;  // share of the curtain's area
     for (uint64_t seed = 30; seed < 34; ++seed) {
         Random random(seed);
@@ -266,7 +267,8 @@ TEST(Air, CurtainsBehindACableAreDots) {
         std::printf("curtain %zu: %.2f of its area, radius up to %.3f m\n", static_cast<size_t>(seed),
                     air.area / (kDepth * kLength), air.widest);
         mean += air.area / (kDepth * kLength) / 4;
-        EXPECT_NEAR(drawn(found, 0, curtain).area, 2 * (1 + std::numbers::pi * kRadius) * kLength, 0.05) << seed;
+        EXPECT_NEAR(drawn(found, 0, curtain).area, 2 * (1 + std::numbers::pi * kRadius) * kLength, 0.05)
+            << seed;
     }
     EXPECT_LT(mean, 0.1) << "it is .17 if doubtful discs need not earn more";
 }
