@@ -39,7 +39,8 @@ LUCARNE_FN bool is_one_surface(GBufferTexel a, vec3 normal, GBufferTexel b, vec3
 // Returns whether a texel seen from behind lies on a face that another texel's surface hides: where two faces
 // of a solid meet, discs of the hidden face may stand out beyond the line at which those of the face in front
 // end, by the noise of the points. It lies within a disc's radius of that face, across a crease, and no
-// farther in small pictures. Arguments as for is_one_surface, `normal` that of `behind`.
+// farther in small pictures. The other side of a thin sheet is no hidden face. Arguments as for
+// is_one_surface, `normal` that of `behind`.
 LUCARNE_FN bool is_over_crease(GBufferTexel behind, vec3 normal, GBufferTexel front, vec3 across,
                                float reach) {
     if (((behind.material ^ front.material) & 0xffffu) != 0u || (front.albedo & kSurfelHasNormal) == 0u ||
@@ -48,7 +49,7 @@ LUCARNE_FN bool is_over_crease(GBufferTexel behind, vec3 normal, GBufferTexel fr
     float radius = max(texel_radius(behind), texel_radius(front));
     float most = radius + 2.0f * reach;
     vec3 other = texel_normal(front);
-    return dot(normal, other) <= kCosCrease && abs(dot(other, across)) <= radius &&
+    return abs(dot(normal, other)) <= kCosCrease && abs(dot(other, across)) <= radius &&
            dot(across, across) <= most * most;
 }
 
