@@ -52,7 +52,7 @@ constexpr float kStrip = 0.13f;
 /// A disc is doubtful (earned.h) if its normal is known no better than to this, radians, and if its
 /// neighbours' variance across their main axis is below this share of that along it, or it is sparse (kThin).
 /// Of even surfaces the normal is known to .01 to .02, and noise is smoothed by the window.
-constexpr float kDoubtfulDeviation = 0.03f, kDoubtfulStrip = 0.4f;
+constexpr float kDoubtfulDeviation = 0.04f, kDoubtfulStrip = 0.4f;
 /// Largest share of a point of a strip, in those of the neighbours.
 constexpr float kMostOfStrip = 1.0f;
 /// From this ratio on the group of points in the air may be farther from the surface than kWindow.
@@ -296,9 +296,9 @@ class SiteEstimator {
         if (creased) line = line_at(site, *side, spacing);
         // The surface of a thin pipe has a border nearby as well as a crease.
         const float to_crease = creased ? side->first.distance : std::numeric_limits<float>::infinity();
-        const bool doubtful = creased && side->first.roughness > kDoubtful * spacing;
-        if (border &&
-            border->distance + kBorderDoubt * rim <= (doubtful || !creased ? 1.0f : kMuchNearer) * to_crease)
+        const bool doubtful_crease = creased && side->first.roughness > kDoubtful * spacing;
+        if (border && border->distance + kBorderDoubt * rim <=
+                          (doubtful_crease || !creased ? 1.0f : kMuchNearer) * to_crease)
             line = border;
         if (line) lines_.push_back(*line);
         const bool at_border = std::min(to_crease, border ? border->distance : to_crease) < kOutermost * rim;

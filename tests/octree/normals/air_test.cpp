@@ -270,7 +270,7 @@ TEST(Air, CurtainsBehindACableAreDots) {
         EXPECT_NEAR(drawn(found, 0, curtain).area, 2 * (1 + std::numbers::pi * kRadius) * kLength, 0.05)
             << seed;
     }
-    EXPECT_LT(mean, 0.1) << "it is .17 if doubtful discs need not earn more";
+    EXPECT_LT(mean, 0.12) << "it is .17 if doubtful discs need not earn more";
 }
 
 /// A sparse reveal between two dense walls, as one sees of a window at a low angle, has a plane that is as
