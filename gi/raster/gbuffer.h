@@ -18,8 +18,9 @@ struct GBuffer {
     Buffer ids;                                    ///< uint[width * height], kNoSurfel where empty
     Buffer keys, queues, candidates, seen_blocks;  ///< scratch of rasterize()
     Buffer sums;                                   ///< scratch of blend(), zero between its calls
-    Buffer coverage;                               ///< of find_coverage(): uint[width * height]
-    std::vector<native::PlacedBlock> to_blend;     ///< of native passes
+    Buffer coverage;  ///< of find_coverage(): uint[width * height]; before it scratch of turn_rims(), four
+                      ///< times as large
+    std::vector<native::PlacedBlock> to_blend;  ///< of native passes
 };
 
 /// Draws the discs of a cut, by compute shaders or natively (Device::native_passes()). In each pixel the
